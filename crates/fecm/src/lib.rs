@@ -1,0 +1,1 @@
+//! Finite-element/contact-mechanics model of gear tooth contact.

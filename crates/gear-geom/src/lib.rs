@@ -1,0 +1,1 @@
+//! Involute gear geometry: flanks, fillets, micro-geometry, landmarks and mesh kinematics.

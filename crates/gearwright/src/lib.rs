@@ -1,0 +1,1 @@
+//! The gearwright application: case files in, result files out.

@@ -1,0 +1,1 @@
+//! Vibration signals and condition indicators for gear health monitoring.

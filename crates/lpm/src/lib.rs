@@ -1,0 +1,1 @@
+//! Lumped-parameter dynamics of a gear pair with contact loss.

@@ -1,0 +1,2 @@
+//! Development and study commands of the workspace (`cargo xtask help`).
+fn main() {}
