@@ -1,1 +1,69 @@
 //! Finite-element/contact-mechanics model of gear tooth contact.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`element`], [`mesh`], [`face`], [`assembly`] | finite elements of an extruded body |
+//! | [`condense`], [`ring`] | one sector condensed, the ring of sectors closed |
+//! | [`body`] | a gear as the contact problem sees it |
+//! | [`profile`], [`pairing`], [`search`] | flanks in space, exact separations, tip contact |
+//! | [`halfspace`], [`nearfield`], [`contact`] | local deformation, contact grid and its compliance |
+//! | [`lcp`] | the contact problem and its solvers |
+//! | [`statics`] | transmission error, load sharing and mesh stiffness over the mesh cycle |
+//! | [`analytic`] | closed forms for tests and figures |
+//!
+//! ```
+//! use fecm::{FaceModel, PairModel, PairModelOptions, StaticsRequest};
+//! use gear_geom::{Gear, GearPair, GearSpec};
+//! // the 25-tooth, 6 mm gear that is `GearSpec`'s default, with itself, in plane stress
+//! let gear = Gear::new(&GearSpec::default())?;
+//! let pair = GearPair::new(gear.clone(), gear, 150.1e-3)?;
+//! let options = PairModelOptions { face: FaceModel::PlaneStress, ..PairModelOptions::default() };
+//! let model = PairModel::new(&pair, &options)?;
+//! let request = StaticsRequest {
+//!     mesh_cycles: vec![0.0, 0.5],
+//!     torques: vec![200.0],
+//!     stiffness_difference: false,
+//!     keep_pressure: false,
+//! };
+//! let series = model.solve(&request, &())?;
+//! let [single, double] = &series.results[0][..] else { unreachable!() };
+//! assert_eq!((single.loaded_pairs().count(), double.loaded_pairs().count()), (1, 2));
+//! assert!(single.static_transmission_error > double.static_transmission_error);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+#![cfg_attr(
+    not(test),
+    warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)
+)]
+
+pub mod analytic;
+pub mod assembly;
+pub mod body;
+pub mod condense;
+pub mod contact;
+pub mod element;
+pub mod error;
+pub mod face;
+pub mod halfspace;
+pub mod lcp;
+pub mod linalg;
+pub mod material;
+pub mod mesh;
+pub mod nearfield;
+pub mod pairing;
+pub mod profile;
+pub mod ring;
+pub mod search;
+pub mod statics;
+
+pub use body::BoreCondition;
+pub use error::FecmError;
+pub use face::FaceModel;
+pub use lcp::SolverKind;
+pub use material::Material;
+pub use mesh::MeshDensity;
+pub use statics::{
+    ContactOptions, MemberOptions, Observer, PairModel, PairModelOptions, PositionResult, PositionStatus, StaticsRequest,
+    StaticsSeries,
+};

@@ -34,6 +34,11 @@
 //! # Ok::<(), gear_geom::GeometryErrors>(())
 //! ```
 
+#![cfg_attr(
+    not(test),
+    warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)
+)]
+
 pub mod error;
 pub mod fillet;
 pub mod gear;

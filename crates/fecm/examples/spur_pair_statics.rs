@@ -1,0 +1,63 @@
+//! Transmission error, load sharing and mesh stiffness of the dissertation's nonunity pair over one mesh cycle.
+//!
+//! `cargo run --release -p fecm --example spur_pair_statics [plane-stress|plane-strain|3d]`
+
+use fecm::{FaceModel, PairModel, PairModelOptions, StaticsRequest};
+use gear_geom::{FilletSpec, Gear, GearPair, GearSpec, ToothThickness};
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    // Table 3.1; bores and fillets are not printed: see the module documentation of the case files
+    let gear = |teeth, thickness: f64, tip: f64, root: f64, bore: f64, face: f64, corner: f64| {
+        Gear::new(&GearSpec {
+            teeth,
+            module: 2.0 * 88.9e-3 / 62.0,
+            pressure_angle: 24.6_f64.to_radians(),
+            thickness: ToothThickness::AtReference(thickness * 1e-3),
+            tip_radius: 0.5e-3 * tip,
+            root_radius: 0.5e-3 * root,
+            rim_radius: 1e-3 * bore,
+            facewidth: 1e-3 * face,
+            fillet: FilletSpec::Rack { tip_radius: 1e-3 * corner },
+            tip_round: 0.05e-3,
+            ..GearSpec::default()
+        })
+    };
+    let pinion = gear(27, 4.52, 84.05, 70.76, 25.4, 34.925, 0.86)?;
+    let wheel = gear(35, 4.18, 104.98, 91.54, 37.7, 31.75, 0.55)?;
+    let pair = GearPair::new(pinion, wheel, 88.9e-3)?;
+    let face = match std::env::args().nth(1).as_deref() {
+        Some("plane-stress") => FaceModel::PlaneStress,
+        Some("plane-strain") => FaceModel::PlaneStrain,
+        _ => PairModelOptions::default().face,
+    };
+    let model = PairModel::new(&pair, &PairModelOptions { face, ..PairModelOptions::default() })?;
+    let request = StaticsRequest {
+        mesh_cycles: (0..50).map(|k| f64::from(k) / 50.0).collect(),
+        torques: vec![424.0],
+        stiffness_difference: true,
+        keep_pressure: false,
+    };
+    let series = model.solve(&request, &())?;
+    println!("mesh cycle  STE (um)  k_l (N/um)  differences  pairs  peak (MPa)  width (mm)");
+    for at in &series.results[0] {
+        let stiffness = |k: Option<f64>| k.unwrap_or_default() * 1e-6;
+        let forces: Vec<String> = at.loaded_pairs().map(|p| format!("{}:{:.0} N", p.pair, p.force)).collect();
+        println!(
+            "{:10.3}  {:8.4}  {:10.2}  {:11.2}  {}  {:.1}  {:.4}  {:?} cells {} updates {} solves {} pivots {}",
+            at.mesh_cycle,
+            at.static_transmission_error * 1e6,
+            stiffness(at.stiffness_local_slope),
+            stiffness(at.stiffness_local_slope_difference),
+            forces.join(" "),
+            at.peak_pressure() * 1e-6,
+            at.pairs.iter().map(|p| p.contact_width).fold(0.0, f64::max) * 1e3,
+            at.status,
+            at.stats.cells,
+            at.stats.geometry_updates,
+            at.stats.solver.solves,
+            at.stats.solver.pivots,
+        );
+    }
+    println!("condensation {:?}, contact {:?}", model.stats().condensation_time, series.time);
+    Ok(())
+}

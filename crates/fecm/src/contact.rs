@@ -1,0 +1,248 @@
+//! The contact grid of one position and its compliance.
+//!
+//! Each tooth pair that can touch gets rows of cells across the expected contact, uniform in arc length along the master flank, times the
+//! cells along the face. The compliance of all cells is
+//!
+//! `C = sum over bodies of Psi (U_FE - U_depth) Psi^T + U_surface`,
+//!
+//! with `Psi` the functions along the face at the cells, `U_FE` the finite-element compliance between stations
+//! ([`crate::body`]) and the near field of [`crate::nearfield`]. It is symmetric by construction.
+
+use faer::Mat;
+
+use crate::body::{GearBody, Station};
+use crate::error::FecmError;
+use crate::linalg::{add_product, product};
+use crate::nearfield::{FaceCells, NearField};
+use crate::search::{Member, NoCell, OpposedPoints, PlacedPair};
+
+/// Rows of cells on one tooth pair.
+#[derive(Debug, Clone)]
+pub struct PairGrid {
+    /// Tooth-pair number.
+    pub pair: i32,
+    /// Geometry of the pair.
+    pub placed: PlacedPair,
+    /// Index of the first row: row `k` lies `k * cell` from the foot.
+    pub first_row: i32,
+    /// Rows, toward increasing radius on the master.
+    pub rows: Vec<OpposedPoints>,
+    /// Separation of every cell with flank modifications: `[row][face cell]` (m).
+    pub gaps: Vec<Vec<f64>>,
+    /// What ended the grid below and above, if not its span.
+    pub limits: [Option<NoCell>; 2],
+}
+
+/// All cells of one position.
+#[derive(Debug, Clone)]
+pub struct ContactGrid {
+    /// Pairs with cells.
+    pub pairs: Vec<PairGrid>,
+    /// Size of a cell along the profile (m).
+    pub cell: f64,
+    /// Cells along the face.
+    pub face: FaceCells,
+}
+
+impl PairGrid {
+    /// Lays rows around `centre` (arc length from the foot, m) to `reach` rows on either side.
+    pub fn new(
+        pair: i32,
+        placed: PlacedPair,
+        cell: f64,
+        centre: f64,
+        reach: i32,
+        face: &FaceCells,
+        material_removed: &impl Fn(&OpposedPoints, f64) -> f64,
+    ) -> Self {
+        let middle = (centre / cell).round() as i32;
+        let at = |row: i32| placed.opposed(f64::from(row) * cell);
+        // walk from the first row that exists: the middle may lie off the end of a tooth
+        let start = (0..=reach).flat_map(|k| [middle + k, middle - k]).find(|&row| at(row).is_ok());
+        let mut limits = [None, None];
+        let mut rows = Vec::new();
+        let mut first_row = middle;
+        if let Some(start) = start {
+            for row in (middle - reach..start).rev() {
+                match at(row) {
+                    Ok(points) => rows.push(points),
+                    Err(reason) => {
+                        limits[0] = Some(reason);
+                        break;
+                    }
+                }
+            }
+            rows.reverse();
+            first_row = start - rows.len() as i32;
+            for row in start..=middle + reach {
+                match at(row) {
+                    Ok(points) => rows.push(points),
+                    Err(reason) => {
+                        limits[1] = Some(reason);
+                        break;
+                    }
+                }
+            }
+        }
+        let gaps = rows
+            .iter()
+            .map(|row| face.centres.iter().map(|&z| row.separation + material_removed(row, z)).collect())
+            .collect();
+        Self { pair, placed, first_row, rows, gaps, limits }
+    }
+
+    /// Arc length of a row from the foot (m).
+    #[must_use]
+    pub fn row_offset(&self, row: usize, cell: f64) -> f64 {
+        f64::from(self.first_row + row as i32) * cell
+    }
+
+    /// Whether the pinion is master.
+    #[must_use]
+    pub fn pinion_is_master(&self) -> bool {
+        self.placed.master == Member::Pinion
+    }
+}
+
+impl ContactGrid {
+    /// Number of cells.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.pairs.iter().map(|pair| pair.rows.len()).sum::<usize>() * self.face.centres.len()
+    }
+
+    /// Gaps of all cells (m): pair by pair, row by row, along the face.
+    #[must_use]
+    pub fn gaps(&self) -> Vec<f64> {
+        self.pairs.iter().flat_map(|pair| pair.gaps.iter().flatten().copied()).collect()
+    }
+
+    /// Lever arms about the wheel's axis of all cells (m).
+    #[must_use]
+    pub fn wheel_arms(&self) -> Vec<f64> {
+        let count = self.face.centres.len();
+        let rows = self.pairs.iter().flat_map(|pair| &pair.rows);
+        rows.flat_map(|row| std::iter::repeat_n(row.wheel_arm, count)).collect()
+    }
+
+    /// Largest number of rows of a pair.
+    #[must_use]
+    pub fn most_rows(&self) -> usize {
+        self.pairs.iter().map(|pair| pair.rows.len()).max().unwrap_or(0)
+    }
+
+    /// Compliance between all cells (m/N), symmetric. `tooth_step` says how a pair's tooth number on each body advances with the pair
+    /// number, in the direction of increasing angle of the body's own frame.
+    ///
+    /// # Errors
+    /// [`FecmError::PointOutsideMesh`] from the stations.
+    pub fn compliance(
+        &self,
+        bodies: [&GearBody; 2],
+        tooth_step: [i32; 2],
+        near: &NearField,
+    ) -> Result<Mat<f64>, FecmError> {
+        let count = self.face.centres.len();
+        let mut total = Mat::zeros(self.size(), self.size());
+        let starts = self.starts();
+        for (index, body) in bodies.iter().enumerate() {
+            let stations = self.stations(body, index)?;
+            for (family_index, family) in body.families.iter().enumerate() {
+                let functions = family.basis.plane_degrees().len();
+                let values: Vec<Vec<f64>> = self.face.centres.iter().map(|&z| family.basis.plane_values(z)).collect();
+                for (i, observed) in self.pairs.iter().enumerate() {
+                    for (j, loaded) in self.pairs.iter().enumerate().skip(i) {
+                        let mut modal = if i == j {
+                            body.own_compliance(family_index, &stations[i])
+                        } else {
+                            let offset = (observed.pair - loaded.pair) * tooth_step[index];
+                            body.cross_compliance(family_index, offset, &stations[i], &stations[j])
+                        };
+                        if i == j {
+                            subtract_depth(&mut modal, functions, |d| near.depth(index, family_index, d));
+                        }
+                        let expanded = expand(&modal, &values, functions);
+                        let (rows, columns) = (expanded.nrows(), expanded.ncols());
+                        let mut block = total.as_mut().submatrix_mut(starts[i] * count, starts[j] * count, rows, columns);
+                        block += &expanded;
+                    }
+                }
+            }
+        }
+        self.add_surface(&mut total, &starts, near);
+        mirror_upper(&mut total);
+        Ok(total)
+    }
+
+    /// First row of each pair in the list of all rows.
+    fn starts(&self) -> Vec<usize> {
+        self.pairs
+            .iter()
+            .scan(0, |sum, pair| {
+                let start = *sum;
+                *sum += pair.rows.len();
+                Some(start)
+            })
+            .collect()
+    }
+
+    fn stations(&self, body: &GearBody, index: usize) -> Result<Vec<Vec<Station>>, FecmError> {
+        let of_pair = |pair: &PairGrid| {
+            let roll = |row: &OpposedPoints| if index == 0 { row.pinion_roll } else { row.wheel_roll };
+            pair.rows.iter().map(|row| body.station(roll(row))).collect()
+        };
+        self.pairs.iter().map(of_pair).collect()
+    }
+
+    fn add_surface(&self, total: &mut Mat<f64>, starts: &[usize], near: &NearField) {
+        let count = self.face.centres.len();
+        for (pair, &start) in self.pairs.iter().zip(starts) {
+            for i in 0..pair.rows.len() {
+                for j in i..pair.rows.len() {
+                    let mut block =
+                        total.as_mut().submatrix_mut((start + i) * count, (start + j) * count, count, count);
+                    block += near.surface(j - i);
+                }
+            }
+        }
+    }
+}
+
+/// Takes the block-Toeplitz depth influence out of a station compliance.
+fn subtract_depth<'a>(modal: &mut Mat<f64>, functions: usize, depth: impl Fn(usize) -> &'a Mat<f64>) {
+    let rows = modal.nrows() / functions;
+    for i in 0..rows {
+        for j in 0..rows {
+            let mut block = modal.as_mut().submatrix_mut(i * functions, j * functions, functions, functions);
+            block -= depth(i.abs_diff(j));
+        }
+    }
+}
+
+/// From functions along the face to cells: `(I x Psi) modal (I x Psi)^T`.
+fn expand(modal: &Mat<f64>, values: &[Vec<f64>], functions: usize) -> Mat<f64> {
+    let psi = Mat::from_fn(values.len(), functions, |j, k| values[j][k]);
+    let (rows, columns) = (modal.nrows() / functions, modal.ncols() / functions);
+    let count = values.len();
+    let mut half = Mat::zeros(rows * count, modal.ncols());
+    for i in 0..rows {
+        let source = modal.as_ref().submatrix(i * functions, 0, functions, modal.ncols());
+        let target = half.as_mut().submatrix_mut(i * count, 0, count, modal.ncols());
+        add_product(target, 1.0, psi.as_ref(), source);
+    }
+    let mut result = Mat::zeros(rows * count, columns * count);
+    for j in 0..columns {
+        let source = half.as_ref().submatrix(0, j * functions, rows * count, functions);
+        let block = product(source, psi.transpose());
+        result.as_mut().submatrix_mut(0, j * count, rows * count, count).copy_from(&block);
+    }
+    result
+}
+
+fn mirror_upper(matrix: &mut Mat<f64>) {
+    for j in 0..matrix.ncols() {
+        for i in 0..j {
+            matrix[(j, i)] = matrix[(i, j)];
+        }
+    }
+}

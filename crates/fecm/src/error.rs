@@ -1,0 +1,69 @@
+//! Errors of the crate.
+
+use thiserror::Error;
+
+/// What can go wrong when a body is meshed, condensed, or brought into contact.
+///
+/// Input faults and failed factorisations are errors; an iteration that does not converge is a status of the result.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum FecmError {
+    /// An option is outside its range.
+    #[error("{name} = {value} is not allowed: {allowed}")]
+    Option {
+        /// Name of the option.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+    /// A mapped element is inside out.
+    #[error(
+        "element {element} of the {body} mesh is inside out near ({x:.6} m, {y:.6} m): Jacobian {jacobian:.3e} m^2; \
+         the tooth form or the rim does not fit the mesh blocks"
+    )]
+    InvertedElement {
+        /// Which body.
+        body: &'static str,
+        /// Element index.
+        element: usize,
+        /// Place (m).
+        x: f64,
+        /// Place (m).
+        y: f64,
+        /// Jacobian determinant (m^2).
+        jacobian: f64,
+    },
+    /// A matrix that must be positive definite is not.
+    #[error("the {what} matrix of size {size} is not positive definite")]
+    NotPositiveDefinite {
+        /// Which matrix.
+        what: &'static str,
+        /// Its size.
+        size: usize,
+    },
+    /// Memory for a factorisation could not be had.
+    #[error("not enough memory to factor the {what} matrix of size {size}")]
+    OutOfMemory {
+        /// Which matrix.
+        what: &'static str,
+        /// Its size.
+        size: usize,
+    },
+    /// A malformed contact problem.
+    #[error(transparent)]
+    Contact(#[from] crate::lcp::LcpError),
+    /// A material point was not found in the mesh.
+    #[error("no element of the {body} mesh holds the point ({x:.6} m, {y:.6} m) at depth {depth:.3e} m below the flank")]
+    PointOutsideMesh {
+        /// Which body.
+        body: &'static str,
+        /// Place (m).
+        x: f64,
+        /// Place (m).
+        y: f64,
+        /// Depth below the flank (m).
+        depth: f64,
+    },
+}

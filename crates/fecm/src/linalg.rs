@@ -1,0 +1,261 @@
+//! Linear algebra of the crate: the only file that names faer's parallelism.
+//!
+//! Everything here runs on the calling thread (`Par::Seq`): parallelism sits outside, over bodies and
+//! positions, so that results do not depend on the number of threads.
+//!
+//! * [`BlockCholesky`]: sparse Cholesky factorisation of a symmetric positive definite matrix given as dense
+//!   blocks on the edges of a node graph. The fill-reducing order (approximate minimum degree) is found on the
+//!   node graph, which is `block` times smaller than the matrix.
+//! * Dense helpers: products, Cholesky solves, symmetrisation.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::matmul::matmul;
+use faer::perm::PermRef;
+use faer::sparse::linalg::amd;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Accum, Conj, Mat, MatMut, MatRef, Par, Side};
+
+use crate::error::FecmError;
+
+/// `a * b`.
+#[must_use]
+pub fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
+    let mut c = Mat::zeros(a.nrows(), b.ncols());
+    matmul(c.as_mut(), Accum::Replace, a, b, 1.0, Par::Seq);
+    c
+}
+
+/// `c += alpha * a * b`.
+pub fn add_product(c: MatMut<'_, f64>, alpha: f64, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
+    matmul(c, Accum::Add, a, b, alpha, Par::Seq);
+}
+
+/// Replaces a square matrix by its symmetric part.
+pub fn symmetrise(a: &mut Mat<f64>) {
+    for j in 0..a.ncols() {
+        for i in 0..j {
+            let mean = 0.5 * (a[(i, j)] + a[(j, i)]);
+            a[(i, j)] = mean;
+            a[(j, i)] = mean;
+        }
+    }
+}
+
+/// A dense symmetric positive definite matrix, factored.
+pub struct DenseCholesky {
+    factor: Mat<f64>,
+}
+
+impl DenseCholesky {
+    /// Factors `a`, reading its lower triangle.
+    ///
+    /// # Errors
+    /// [`FecmError::NotPositiveDefinite`] with `what` when a pivot is not positive.
+    pub fn new(mut a: Mat<f64>, what: &'static str) -> Result<Self, FecmError> {
+        let n = a.nrows();
+        let params = Default::default();
+        let mut memory = MemBuffer::new(
+            faer::linalg::cholesky::llt::factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, params),
+        );
+        faer::linalg::cholesky::llt::factor::cholesky_in_place(
+            a.as_mut(),
+            Default::default(),
+            Par::Seq,
+            MemStack::new(&mut memory),
+            params,
+        )
+        .map_err(|_| FecmError::NotPositiveDefinite { what, size: n })?;
+        Ok(Self { factor: a })
+    }
+
+    /// Solves in place for every column of `rhs`.
+    pub fn solve_in_place(&self, rhs: MatMut<'_, f64>) {
+        let n = self.factor.nrows();
+        let mut memory = MemBuffer::new(
+            faer::linalg::cholesky::llt::solve::solve_in_place_scratch::<f64>(n, rhs.ncols(), Par::Seq),
+        );
+        faer::linalg::cholesky::llt::solve::solve_in_place(
+            self.factor.as_ref(),
+            rhs,
+            Par::Seq,
+            MemStack::new(&mut memory),
+        );
+    }
+
+    /// The inverse, symmetric to rounding.
+    #[must_use]
+    pub fn inverse(&self) -> Mat<f64> {
+        let n = self.factor.nrows();
+        let mut inverse = Mat::identity(n, n);
+        self.solve_in_place(inverse.as_mut());
+        symmetrise(&mut inverse);
+        inverse
+    }
+}
+
+/// Symmetric sparse matrix of dense `block x block` blocks on the edges of a node graph, lower triangle stored.
+pub struct BlockMatrix {
+    /// Degrees of freedom per node.
+    block: usize,
+    /// For each node column, the sorted neighbour rows `>= column`.
+    neighbours: Vec<Vec<u32>>,
+    /// For each node column, blocks in the order of `neighbours`, each column-major.
+    values: Vec<Vec<f64>>,
+}
+
+impl BlockMatrix {
+    /// An all-zero matrix whose graph joins the nodes of each element; `u32::MAX` marks a node left out.
+    #[must_use]
+    pub fn from_elements<'a>(
+        node_count: usize,
+        block: usize,
+        elements: impl Iterator<Item = &'a [u32]>,
+    ) -> Self {
+        let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); node_count];
+        for element in elements {
+            for &column in element.iter().filter(|&&n| n != u32::MAX) {
+                let rows = element.iter().filter(|&&n| n != u32::MAX && n >= column);
+                neighbours[column as usize].extend(rows);
+            }
+        }
+        let mut values = Vec::with_capacity(node_count);
+        for rows in &mut neighbours {
+            rows.sort_unstable();
+            rows.dedup();
+            values.push(vec![0.0; rows.len() * block * block]);
+        }
+        Self { block, neighbours, values }
+    }
+
+    /// The block at node row `row` and node column `column` (`row >= column`), column-major, or `None` off the graph.
+    pub fn block_mut(&mut self, row: u32, column: u32) -> Option<&mut [f64]> {
+        let position = self.neighbours[column as usize].binary_search(&row).ok()?;
+        let size = self.block * self.block;
+        self.values[column as usize].get_mut(position * size..(position + 1) * size)
+    }
+
+    /// Factors the matrix.
+    ///
+    /// # Errors
+    /// [`FecmError::NotPositiveDefinite`] when it is not, [`FecmError::OutOfMemory`] when the factor does not fit.
+    pub fn cholesky(&self, what: &'static str) -> Result<BlockCholesky, FecmError> {
+        let (nodes, block) = (self.neighbours.len(), self.block);
+        let size = nodes * block;
+        let oom = |_| FecmError::OutOfMemory { what, size };
+        let order = self.node_order(what)?;
+        let (mut forward, mut inverse) = (vec![0_usize; size], vec![0_usize; size]);
+        for (new, &old) in order.iter().enumerate() {
+            for k in 0..block {
+                forward[new * block + k] = old * block + k;
+                inverse[old * block + k] = new * block + k;
+            }
+        }
+        let (column_starts, rows, values) = self.expand();
+        let pattern = SymbolicSparseColMatRef::new_checked(size, size, &column_starts, None, &rows);
+        let matrix = SparseColMatRef::new(pattern, &values);
+        let symbolic = factorize_symbolic_cholesky(
+            pattern,
+            Side::Lower,
+            SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, size)),
+            CholeskySymbolicParams::default(),
+        )
+        .map_err(oom)?;
+        let mut factor = vec![0.0; symbolic.len_val()];
+        let params = Default::default();
+        let mut memory =
+            MemBuffer::try_new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, params))
+                .map_err(|_| FecmError::OutOfMemory { what, size })?;
+        symbolic
+            .factorize_numeric_llt(
+                &mut factor,
+                matrix,
+                Side::Lower,
+                Default::default(),
+                Par::Seq,
+                MemStack::new(&mut memory),
+                params,
+            )
+            .map_err(|_| FecmError::NotPositiveDefinite { what, size })?;
+        Ok(BlockCholesky { symbolic, factor, size })
+    }
+
+    /// Fill-reducing order of the nodes: `order[new] = old`.
+    fn node_order(&self, what: &'static str) -> Result<Vec<usize>, FecmError> {
+        let nodes = self.neighbours.len();
+        let mut columns: Vec<Vec<usize>> = vec![Vec::new(); nodes];
+        for (column, rows) in self.neighbours.iter().enumerate() {
+            for &row in rows.iter().filter(|&&r| r as usize != column) {
+                columns[column].push(row as usize);
+                columns[row as usize].push(column);
+            }
+        }
+        let (mut starts, mut rows) = (vec![0_usize], Vec::new());
+        for column in &mut columns {
+            column.sort_unstable();
+            rows.extend_from_slice(column);
+            starts.push(rows.len());
+        }
+        let pattern = SymbolicSparseColMatRef::new_checked(nodes, nodes, &starts, None, &rows);
+        let (mut order, mut inverse) = (vec![0_usize; nodes], vec![0_usize; nodes]);
+        let oom = FecmError::OutOfMemory { what, size: nodes };
+        let Ok(mut memory) = MemBuffer::try_new(amd::order_scratch::<usize>(nodes, rows.len())) else {
+            return Err(oom);
+        };
+        amd::order(&mut order, &mut inverse, pattern, amd::Control::default(), MemStack::new(&mut memory))
+            .map_err(|_| oom)?;
+        Ok(order)
+    }
+
+    /// Compressed columns of the lower triangle.
+    fn expand(&self) -> (Vec<usize>, Vec<usize>, Vec<f64>) {
+        let block = self.block;
+        let (mut starts, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+        for (column, neighbours) in self.neighbours.iter().enumerate() {
+            for c in 0..block {
+                for (slot, &row) in neighbours.iter().enumerate() {
+                    let first = if row as usize == column { c } else { 0 };
+                    let base = slot * block * block + c * block;
+                    rows.extend((first..block).map(|r| row as usize * block + r));
+                    values.extend_from_slice(&self.values[column][base + first..base + block]);
+                }
+                starts.push(rows.len());
+            }
+        }
+        (starts, rows, values)
+    }
+}
+
+/// Sparse Cholesky factor of a [`BlockMatrix`].
+pub struct BlockCholesky {
+    symbolic: SymbolicCholesky<usize>,
+    factor: Vec<f64>,
+    size: usize,
+}
+
+impl BlockCholesky {
+    /// Solves in place for every column of `rhs`.
+    pub fn solve_in_place(&self, rhs: MatMut<'_, f64>) {
+        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(rhs.ncols(), Par::Seq));
+        LltRef::<'_, usize, f64>::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
+            Conj::No,
+            rhs,
+            Par::Seq,
+            MemStack::new(&mut memory),
+        );
+    }
+
+    /// Number of unknowns.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Stored entries of the factor.
+    #[must_use]
+    pub fn factor_entries(&self) -> usize {
+        self.factor.len()
+    }
+}

@@ -1,0 +1,106 @@
+//! What a static analysis needs besides the geometry.
+
+use crate::body::BoreCondition;
+use crate::error::FecmError;
+use crate::face::FaceModel;
+use crate::lcp::SolverKind;
+use crate::material::Material;
+use crate::mesh::MeshDensity;
+
+/// One gear of the pair.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MemberOptions {
+    /// Material.
+    pub material: Material,
+    /// Mesh of the tooth sector.
+    pub mesh: MeshDensity,
+    /// What holds the bore.
+    pub bore: BoreCondition,
+}
+
+impl Default for MemberOptions {
+    fn default() -> Self {
+        Self { material: Material::STEEL, mesh: MeshDensity::default(), bore: BoreCondition::RigidHub }
+    }
+}
+
+/// Contact grid and its near field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactOptions {
+    /// Cells per Hertz half width along the profile, 1 to 100. The half width is that of all the load on one pair.
+    pub cells_per_half_width: f64,
+    /// Cells along the whole face, 1 to 400. Plane models have one.
+    pub face_cells: usize,
+    /// Matching depth in modules, 0.01 to 2.
+    pub matching_depth: f64,
+    /// Whether mirror loads correct the near field at the free ends of the face.
+    pub edge_correction: bool,
+    /// Solver of the contact problem.
+    pub solver: SolverKind,
+}
+
+impl Default for ContactOptions {
+    fn default() -> Self {
+        Self {
+            cells_per_half_width: 6.0,
+            face_cells: 24,
+            matching_depth: 0.15,
+            edge_correction: true,
+            solver: SolverKind::default(),
+        }
+    }
+}
+
+/// Options of a [`super::PairModel`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PairModelOptions {
+    /// Behaviour along the face.
+    pub face: FaceModel,
+    /// Driving gear.
+    pub pinion: MemberOptions,
+    /// Driven gear.
+    pub wheel: MemberOptions,
+    /// Contact.
+    pub contact: ContactOptions,
+}
+
+impl Default for PairModelOptions {
+    fn default() -> Self {
+        Self {
+            face: FaceModel::Solid { order: 6 },
+            pinion: MemberOptions::default(),
+            wheel: MemberOptions::default(),
+            contact: ContactOptions::default(),
+        }
+    }
+}
+
+impl PairModelOptions {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`FecmError::Option`] for the first option out of range.
+    pub fn validate(&self) -> Result<(), FecmError> {
+        for member in [&self.pinion, &self.wheel] {
+            member.material.validate()?;
+            member.mesh.validate()?;
+        }
+        let contact = &self.contact;
+        let order = match self.face {
+            FaceModel::Solid { order } => order,
+            _ => 1,
+        };
+        let checks = [
+            ("face order", order as f64, 1.0, 40.0, "1 to 40"),
+            ("cells per half width", contact.cells_per_half_width, 1.0, 100.0, "1 to 100"),
+            ("face cells", contact.face_cells as f64, 1.0, 400.0, "1 to 400"),
+            ("matching depth", contact.matching_depth, 0.01, 2.0, "0.01 to 2 modules"),
+        ];
+        for (name, value, low, high, allowed) in checks {
+            if !(low..=high).contains(&value) {
+                return Err(FecmError::Option { name, value, allowed });
+            }
+        }
+        Ok(())
+    }
+}

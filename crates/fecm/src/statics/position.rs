@@ -1,0 +1,359 @@
+//! The contact problem at one position.
+
+use faer::Mat;
+
+use super::model::PairModel;
+use super::result::{PairState, PositionResult, PositionStats, PositionStatus, PressurePatch};
+use crate::contact::{ContactGrid, PairGrid};
+use crate::error::FecmError;
+use crate::face::FaceModel;
+use crate::lcp::{ContactProblem, ContactSolution, SolveStats, solve_contact};
+use crate::nearfield::NearField;
+use crate::search::{NoCell, OpposedPoints};
+
+/// What one position hands to the next as a start.
+#[derive(Debug, Clone)]
+pub(super) struct Start {
+    /// Closing rotation (rad).
+    pub rotation: f64,
+    /// Rows on either side of the contact's centre.
+    pub reach: i32,
+    /// Active cells: pair relative to the mesh cycle's integer part, row, face cell.
+    pub active: Vec<(i32, i32, usize)>,
+}
+
+/// What to compute at a position.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PositionRequest<'a> {
+    pub mesh_cycle: f64,
+    pub torque: f64,
+    pub cell: f64,
+    pub near: &'a NearField,
+    pub rows: usize,
+    pub stiffness_difference: bool,
+    pub keep_pressure: bool,
+}
+
+/// Geometry is set again when the rotation moved by more than this fraction: the error of the linear step is then below
+/// `(0.02 delta)^2 / 2 R`, some 1e-5 of `delta`.
+const ROTATION_TOLERANCE: f64 = 0.02;
+const MOST_UPDATES: usize = 12;
+/// Relative change of torque for the local slope by differences.
+const TORQUE_STEP: f64 = 0.01;
+
+impl PairModel {
+    /// Solves one position; returns also the start for the next.
+    pub(super) fn solve_position(
+        &self,
+        request: &PositionRequest<'_>,
+        start: Option<&Start>,
+    ) -> Result<(PositionResult, Option<Start>), FecmError> {
+        let no_load = self.no_load_rotation(request);
+        let Some(no_load) = no_load else {
+            return Ok((self.untouched(request), None));
+        };
+        let base_radius = self.pairing.base_radius(1);
+        let cells = self.options.contact.cells_per_half_width;
+        let mut reach = start.map_or((1.35 * cells).ceil() as i32 + 1, |s| s.reach);
+        let mut rotation = match start {
+            Some(start) => start.rotation.max(no_load),
+            None => no_load + self.deflection_guess(request.torque) / base_radius,
+        };
+        let mut warm: Option<Vec<(i32, i32, usize)>> = start.map(|s| s.active.clone());
+        let mut stats = PositionStats::default();
+        let mut own_near: Option<NearField> = None;
+        let mut outcome: Option<(ContactGrid, Mat<f64>, ContactSolution)> = None;
+        let mut status = PositionStatus::NotConverged;
+        for update in 0..MOST_UPDATES {
+            stats.geometry_updates = update;
+            let grid = self.grid(request, rotation, no_load, reach);
+            if grid.size() == 0 {
+                return Ok((self.untouched(request), None));
+            }
+            let rows = grid.most_rows();
+            if rows > request.rows && own_near.is_none() {
+                own_near = Some(self.near_field(request.cell, 4 * rows));
+            }
+            let near = own_near.as_ref().unwrap_or(request.near);
+            let compliance = grid.compliance([&self.bodies[0], &self.bodies[1]], self.pairing.tooth_steps(), near)?;
+            let active = warm.as_ref().map(|cells| to_cells(&grid, request.mesh_cycle, cells));
+            let (gaps, arms) = (grid.gaps(), grid.wheel_arms());
+            let problem = ContactProblem {
+                compliance: compliance.as_ref(),
+                gap: &gaps,
+                arm: &arms,
+                load: request.torque,
+            };
+            let solution = solve_contact(self.options.contact.solver, &problem, active.as_deref())?;
+            stats.solver = stats.solver.followed_by(&solution.stats);
+            stats.cells = grid.size();
+            let change = solution.approach;
+            rotation += change;
+            warm = Some(from_cells(&grid, request.mesh_cycle, &solution.forces));
+            let crowded = grid_is_crowded(&grid, &solution.forces);
+            let moved = change.abs() * base_radius > ROTATION_TOLERANCE * (rotation - no_load).abs() * base_radius;
+            let converged = solution.is_converged();
+            let fillet = touches_fillet(&grid, &solution.forces);
+            outcome = Some((grid, compliance, solution));
+            if !converged {
+                break;
+            }
+            if crowded {
+                reach = (reach * 3 + 1) / 2;
+            } else if !moved || request.torque == 0.0 {
+                status = if fillet { PositionStatus::FilletContact } else { PositionStatus::Converged };
+                break;
+            }
+        }
+        let Some((grid, compliance, solution)) = outcome else {
+            return Ok((self.untouched(request), None));
+        };
+        let difference = if request.stiffness_difference && request.torque > 0.0 {
+            self.difference_slope(request, &grid, &compliance, &solution, &mut stats.solver)?
+        } else {
+            None
+        };
+        let next = Start {
+            rotation,
+            reach,
+            active: from_cells(&grid, request.mesh_cycle, &solution.forces),
+        };
+        let result = self.collect(request, &grid, &solution, status, rotation, no_load, difference, stats);
+        Ok((result, Some(next)))
+    }
+
+    /// Candidate pairs with rows around their nearest approach, the wheel closed by `rotation`.
+    fn grid(&self, request: &PositionRequest<'_>, rotation: f64, no_load: f64, reach: i32) -> ContactGrid {
+        let mut pairs = Vec::new();
+        let deflection = (rotation - no_load).max(0.0) * self.pairing.base_radius(1);
+        for pair in self.pairing.candidates(request.mesh_cycle) {
+            let placed = self.pairing.place(pair, request.mesh_cycle, rotation);
+            let removed = |row: &OpposedPoints, z: f64| self.pairing.material_removed(pair, row, z);
+            let Some((centre, gap)) = self.pairing.nearest(&placed, &removed, request.cell, 2 * reach) else {
+                continue;
+            };
+            // a pair that is apart by more than a fraction of the deflection cannot be closed by the rest of it
+            if gap > 0.5 * deflection.max(1e-3 * request.cell) {
+                continue;
+            }
+            let grid = PairGrid::new(pair, placed, request.cell, centre, reach, &self.face, &removed);
+            if !grid.rows.is_empty() {
+                pairs.push(grid);
+            }
+        }
+        ContactGrid { pairs, cell: request.cell, face: self.face.clone() }
+    }
+
+    /// Closing rotation at first touch without load (rad).
+    fn no_load_rotation(&self, request: &PositionRequest<'_>) -> Option<f64> {
+        let mut rotation = 0.0;
+        for _ in 0..4 {
+            let mut least: Option<f64> = None;
+            for pair in self.pairing.candidates(request.mesh_cycle) {
+                let placed = self.pairing.place(pair, request.mesh_cycle, rotation);
+                let removed = |row: &OpposedPoints, z: f64| self.pairing.material_removed(pair, row, z);
+                let search = (self.pairing.shortest_flank() / 64.0).max(request.cell);
+                let Some((_, gap)) = self.pairing.nearest(&placed, &removed, search, 24) else {
+                    continue;
+                };
+                let step = gap / self.pairing.base_radius(1);
+                least = Some(least.map_or(step, |l: f64| l.min(step)));
+            }
+            let step = least?;
+            rotation += step;
+            if step.abs() * self.pairing.base_radius(1) < 1e-12 {
+                break;
+            }
+        }
+        Some(rotation)
+    }
+
+    /// Local slope from torques 1 % above and below, same geometry.
+    fn difference_slope(
+        &self,
+        request: &PositionRequest<'_>,
+        grid: &ContactGrid,
+        compliance: &Mat<f64>,
+        solution: &ContactSolution,
+        stats: &mut SolveStats,
+    ) -> Result<Option<f64>, FecmError> {
+        let (gaps, arms) = (grid.gaps(), grid.wheel_arms());
+        let active: Vec<bool> = solution.forces.iter().map(|&f| f > 0.0).collect();
+        let mut rotations = [0.0; 2];
+        for (rotation, sign) in rotations.iter_mut().zip([-1.0, 1.0]) {
+            let load = request.torque * (1.0 + sign * TORQUE_STEP);
+            let problem = ContactProblem { compliance: compliance.as_ref(), gap: &gaps, arm: &arms, load };
+            let nearby = solve_contact(self.options.contact.solver, &problem, Some(&active))?;
+            *stats = stats.followed_by(&nearby.stats);
+            *rotation = nearby.approach;
+        }
+        let radius = self.pairing.base_radius(1);
+        let opening = radius * radius * (rotations[1] - rotations[0]);
+        Ok((opening > 0.0).then(|| 2.0 * TORQUE_STEP * request.torque / opening))
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn collect(
+        &self,
+        request: &PositionRequest<'_>,
+        grid: &ContactGrid,
+        solution: &ContactSolution,
+        status: PositionStatus,
+        rotation: f64,
+        no_load: f64,
+        difference: Option<f64>,
+        mut stats: PositionStats,
+    ) -> PositionResult {
+        let radius = self.pairing.base_radius(1);
+        let (ste, no_load_te) = (radius * rotation, radius * no_load);
+        let deflection = ste - no_load_te;
+        let total: f64 = solution.forces.iter().sum();
+        let columns = grid.face.centres.len();
+        // a mirrored cell's force is shared by two places
+        let places = if grid.face.mirrored { 2.0 } else { 1.0 };
+        let area = grid.cell * grid.face.width * places;
+        let mut pairs = Vec::new();
+        let mut patches = Vec::new();
+        let mut at = 0;
+        for pair in &grid.pairs {
+            let count = pair.rows.len() * columns;
+            let forces = &solution.forces[at..at + count];
+            at += count;
+            let force: f64 = forces.iter().sum();
+            pairs.push(PairState {
+                pair: pair.pair,
+                force,
+                share: if total > 0.0 { force / total } else { 0.0 },
+                stiffness: if deflection > 0.0 { force / deflection } else { 0.0 },
+                contact_width: contact_width(forces, columns, grid.cell),
+                peak_pressure: forces.iter().fold(0.0_f64, |a, &f| a.max(f)) / area,
+            });
+            if request.keep_pressure && force > 0.0 {
+                patches.push(PressurePatch {
+                    pair: pair.pair,
+                    pinion_roll: pair.rows.iter().map(|row| row.pinion_roll).collect(),
+                    wheel_roll: pair.rows.iter().map(|row| row.wheel_roll).collect(),
+                    face: grid.face.centres.clone(),
+                    cell: [grid.cell, grid.face.width],
+                    pressure: forces.chunks(columns).map(|row| row.iter().map(|f| f / area).collect()).collect(),
+                });
+            }
+        }
+        let moment: f64 = grid.wheel_arms().iter().zip(&solution.forces).map(|(a, f)| a * f).sum();
+        stats.torque_residual = if request.torque > 0.0 { (moment / request.torque - 1.0).abs() } else { moment };
+        let loaded = request.torque > 0.0;
+        PositionResult {
+            mesh_cycle: request.mesh_cycle,
+            torque: request.torque,
+            status,
+            rotation,
+            static_transmission_error: ste,
+            no_load_transmission_error: no_load_te,
+            mesh_force: request.torque / radius,
+            stiffness_average_slope: (loaded && deflection > 0.0).then(|| request.torque / radius / deflection),
+            stiffness_local_slope: solution.tangent.filter(|_| loaded).map(|t| t / (radius * radius)),
+            stiffness_local_slope_difference: difference,
+            pairs,
+            patches,
+            stats,
+        }
+    }
+
+    /// Result where nothing can touch.
+    fn untouched(&self, request: &PositionRequest<'_>) -> PositionResult {
+        PositionResult {
+            mesh_cycle: request.mesh_cycle,
+            torque: request.torque,
+            status: PositionStatus::NoContact,
+            rotation: 0.0,
+            static_transmission_error: 0.0,
+            no_load_transmission_error: 0.0,
+            mesh_force: request.torque / self.pairing.base_radius(1),
+            stiffness_average_slope: None,
+            stiffness_local_slope: None,
+            stiffness_local_slope_difference: None,
+            pairs: Vec::new(),
+            patches: Vec::new(),
+            stats: PositionStats::default(),
+        }
+    }
+
+    /// Whether the model is three-dimensional.
+    #[must_use]
+    pub fn is_solid(&self) -> bool {
+        matches!(self.options.face, FaceModel::Solid { .. })
+    }
+}
+
+/// Active cells of a grid by pair, row and column, pairs counted from the position's own.
+fn from_cells(grid: &ContactGrid, mesh_cycle: f64, forces: &[f64]) -> Vec<(i32, i32, usize)> {
+    let columns = grid.face.centres.len();
+    let own = mesh_cycle.floor() as i32;
+    let mut cells = Vec::new();
+    let mut at = 0;
+    for pair in &grid.pairs {
+        for row in 0..pair.rows.len() {
+            for column in 0..columns {
+                if forces[at] > 0.0 {
+                    cells.push((pair.pair - own, pair.first_row + row as i32, column));
+                }
+                at += 1;
+            }
+        }
+    }
+    cells
+}
+
+fn to_cells(grid: &ContactGrid, mesh_cycle: f64, cells: &[(i32, i32, usize)]) -> Vec<bool> {
+    let columns = grid.face.centres.len();
+    let own = mesh_cycle.floor() as i32;
+    let mut active = vec![false; grid.size()];
+    let mut start = 0;
+    for pair in &grid.pairs {
+        for &(number, row, column) in cells.iter().filter(|cell| cell.0 == pair.pair - own) {
+            let _ = number;
+            let row = row - pair.first_row;
+            if row >= 0 && (row as usize) < pair.rows.len() && column < columns {
+                active[start + row as usize * columns + column] = true;
+            }
+        }
+        start += pair.rows.len() * columns;
+    }
+    active
+}
+
+/// Whether load reaches the first or last row of a pair that could have more rows.
+fn grid_is_crowded(grid: &ContactGrid, forces: &[f64]) -> bool {
+    end_rows(grid, forces).any(|(limit, loaded)| limit.is_none() && loaded)
+}
+
+/// Whether load reaches a row next to a fillet.
+fn touches_fillet(grid: &ContactGrid, forces: &[f64]) -> bool {
+    end_rows(grid, forces).any(|(limit, loaded)| limit == Some(NoCell::Fillet) && loaded)
+}
+
+fn end_rows<'a>(grid: &'a ContactGrid, forces: &'a [f64]) -> impl Iterator<Item = (Option<NoCell>, bool)> + 'a {
+    let columns = grid.face.centres.len();
+    let mut start = 0;
+    grid.pairs.iter().flat_map(move |pair| {
+        let count = pair.rows.len() * columns;
+        let own = &forces[start..start + count];
+        start += count;
+        let loaded = |cells: &[f64]| cells.iter().any(|&f| f > 0.0);
+        [(pair.limits[0], loaded(&own[..columns])), (pair.limits[1], loaded(&own[count - columns..]))]
+    })
+}
+
+/// Four standard deviations of the pressure along the profile, in the face column that carries most.
+fn contact_width(forces: &[f64], columns: usize, cell: f64) -> f64 {
+    let column_sum = |column: usize| forces.iter().skip(column).step_by(columns).sum::<f64>();
+    let heaviest = (0..columns).max_by(|&a, &b| column_sum(a).total_cmp(&column_sum(b))).unwrap_or(0);
+    let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
+    for (row, force) in forces.iter().skip(heaviest).step_by(columns).enumerate() {
+        let x = row as f64 * cell;
+        sum += force;
+        first += force * x;
+        second += force * (x * x + cell * cell / 12.0);
+    }
+    if sum > 0.0 { 4.0 * (second / sum - (first / sum).powi(2)).max(0.0).sqrt() } else { 0.0 }
+}
