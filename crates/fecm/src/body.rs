@@ -111,6 +111,8 @@ pub struct GearBody {
     depth: f64,
     base_radius: f64,
     flank_slots: HashMap<u32, usize>,
+    /// Node of each flank slot.
+    flank_nodes: Vec<u32>,
     depth_slots: HashMap<u32, usize>,
     depth_elements: Vec<u32>,
 }
@@ -138,6 +140,7 @@ impl GearBody {
             depth: options.matching_depth,
             base_radius: gear.base_radius(),
             flank_slots: HashMap::new(),
+            flank_nodes: Vec::new(),
             depth_slots: HashMap::new(),
             depth_elements: Vec::new(),
             sector,
@@ -178,7 +181,9 @@ impl GearBody {
         for edge in &self.sector.flank(self.side).edges {
             for &node in edge {
                 let next = self.flank_slots.len();
-                self.flank_slots.entry(node).or_insert(next);
+                if *self.flank_slots.entry(node).or_insert(next) == next {
+                    self.flank_nodes.push(node);
+                }
             }
         }
     }
@@ -286,6 +291,21 @@ impl GearBody {
         let nodes = self.sector.mesh.element(element as usize);
         let depth = nodes.iter().zip(&shapes).map(|(node, shape)| (self.depth_slots[node], normal * *shape)).collect();
         Ok(Station { load, depth })
+    }
+
+    /// Adds the inward normal load of a station, given in the functions along the face of a family (N), to the interior loads of its sector.
+    pub fn add_load(&self, family: usize, station: &Station, modal: &[f64], loads: &mut Mat<f64>) {
+        let family = &self.families[family];
+        for &(slot, weight) in &station.load {
+            let node = self.flank_nodes[slot];
+            for (k, force) in modal.iter().enumerate() {
+                for (c, share) in [weight.x, weight.y].into_iter().enumerate() {
+                    if let Some(row) = family.sector.interior_row(node, 2 * k + c) {
+                        loads[(row, 0)] -= share * force;
+                    }
+                }
+            }
+        }
     }
 
     fn condense(&self, gear: &Gear, basis: FaceBasis, options: &BodyOptions) -> Result<Family, FecmError> {

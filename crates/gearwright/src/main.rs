@@ -1,2 +1,19 @@
 //! Command line of gearwright.
-fn main() {}
+
+use std::process::ExitCode;
+
+use clap::Parser as _;
+use gearwright::cli::{Cli, execute};
+
+fn main() -> ExitCode {
+    match execute(&Cli::parse()) {
+        Ok(text) => {
+            print!("{text}");
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -17,12 +17,14 @@
 //!
 //! [`PairModel::new`] does what is done once (mesh, condense); [`PairModel::solve`] is cheap and parallel.
 
+mod deformation;
 mod model;
 mod options;
 mod position;
 mod result;
 mod series;
 
+pub use deformation::BodyDeformation;
 pub use model::{ModelStats, PairModel};
 pub use options::{ContactOptions, MemberOptions, PairModelOptions};
 pub use result::{PairState, PositionResult, PositionStats, PositionStatus, PressurePatch};

@@ -1,0 +1,112 @@
+//! A parsed case file that knows the line of every key.
+
+use std::collections::BTreeMap;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::fault::Fault;
+
+/// A value with its place.
+#[derive(Debug, Clone)]
+pub struct Node {
+    /// Line, from 1.
+    pub line: usize,
+    /// Source text of the value.
+    pub text: String,
+    /// The value.
+    pub value: Value,
+}
+
+/// A value of a case file.
+#[derive(Debug, Clone)]
+pub enum Value {
+    /// Section.
+    Table(BTreeMap<String, Node>),
+    /// Anything else.
+    Plain(serde_json::Value),
+}
+
+/// Parses TOML text.
+///
+/// # Errors
+/// One fault with the line of the syntax error.
+pub fn parse(text: &str) -> Result<Node, Fault> {
+    let syntax = |message: &str, at: Option<usize>| Fault {
+        line: at.map(|offset| line_of(text, offset)),
+        key: String::new(),
+        value: None,
+        message: format!("not valid TOML: {message}"),
+    };
+    let table = DeTable::parse(text).map_err(|e| syntax(e.message(), e.span().map(|s| s.start)))?;
+    Ok(Node { line: 1, text: String::new(), value: Value::Table(convert_table(text, table.get_ref())) })
+}
+
+fn line_of(text: &str, offset: usize) -> usize {
+    text[..offset.min(text.len())].matches('\n').count() + 1
+}
+
+fn convert_table(text: &str, table: &DeTable<'_>) -> BTreeMap<String, Node> {
+    table
+        .iter()
+        .map(|(key, value)| {
+            let line = line_of(text, key.span().start);
+            (key.get_ref().to_string(), convert(text, line, value))
+        })
+        .collect()
+}
+
+fn convert(text: &str, line: usize, value: &Spanned<DeValue<'_>>) -> Node {
+    let span = value.span();
+    let source = text.get(span).unwrap_or_default().trim().to_owned();
+    let value = match value.get_ref() {
+        DeValue::Table(table) => Value::Table(convert_table(text, table)),
+        other => Value::Plain(plain(other)),
+    };
+    Node { line, text: source, value }
+}
+
+fn plain(value: &DeValue<'_>) -> serde_json::Value {
+    match value {
+        DeValue::String(s) => s.to_string().into(),
+        DeValue::Boolean(b) => (*b).into(),
+        DeValue::Integer(i) => {
+            i64::from_str_radix(i.as_str(), i.radix()).map_or(serde_json::Value::Null, Into::into)
+        }
+        DeValue::Float(x) => {
+            let number = x.as_str().replace('_', "").parse::<f64>().ok();
+            number.and_then(serde_json::Number::from_f64).map_or(serde_json::Value::Null, serde_json::Value::Number)
+        }
+        DeValue::Array(items) => items.iter().map(|item| plain(item.get_ref())).collect(),
+        DeValue::Table(table) => {
+            table.iter().map(|(k, v)| (k.get_ref().to_string(), plain(v.get_ref()))).collect()
+        }
+        DeValue::Datetime(d) => d.to_string().into(),
+    }
+}
+
+impl Node {
+    /// The node at a dotted key.
+    #[must_use]
+    pub fn find(&self, key: &str) -> Option<&Self> {
+        key.split('.').try_fold(self, |node, part| match &node.value {
+            Value::Table(table) => table.get(part),
+            Value::Plain(_) => None,
+        })
+    }
+
+    /// A fault at a dotted key: its own line if it is written, else that of its innermost section that is.
+    #[must_use]
+    pub fn fault(&self, key: &str, message: impl Into<String>) -> Fault {
+        let written = self.find(key);
+        let mut section = key;
+        let mut line = written.map(|node| node.line);
+        while line.is_none() {
+            let Some((outer, _)) = section.rsplit_once('.') else { break };
+            section = outer;
+            line = self.find(section).map(|node| node.line);
+        }
+        let value = written.filter(|node| !matches!(node.value, Value::Table(_))).map(|node| node.text.clone());
+        Fault { line, key: key.into(), value, message: message.into() }
+    }
+}

@@ -1,0 +1,136 @@
+//! Commands.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use clap::{Parser, Subcommand};
+
+use crate::case::{self, reference, template};
+use crate::run;
+
+mod progress;
+
+/// Spur gear contact from a TOML case file.
+#[derive(Debug, Parser)]
+#[command(name = "gearwright", version, about, max_term_width = 100)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Run a case and write tables, plots, ParaView files and a summary.
+    Run {
+        /// Case file.
+        case: PathBuf,
+        /// Results folder; default: out/<name of the case file>.
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// Threads; default: one per core. Results do not depend on it.
+        #[arg(long)]
+        threads: Option<usize>,
+    },
+    /// Validate a case without running it.
+    Check {
+        /// Case file.
+        case: PathBuf,
+    },
+    /// Write a commented case file to start from.
+    Init {
+        /// Kind of case: spur-pair.
+        kind: String,
+        /// File to write; default: <kind>.toml.
+        file: Option<PathBuf>,
+    },
+    /// Say what a key of the case file means; without a key, list all.
+    Explain {
+        /// Key with or without its sections, e.g. tip_relief_um or pinion.hub.condition.
+        key: Option<String>,
+    },
+    /// Print the JSON schema of case files.
+    Schema,
+}
+
+/// Runs the command line; returns what goes to standard output.
+///
+/// # Errors
+/// What the user has to be told.
+pub fn execute(cli: &Cli) -> anyhow::Result<String> {
+    match &cli.command {
+        Command::Run { case, out, threads } => run_case(case, out.as_deref(), *threads),
+        Command::Check { case } => {
+            let loaded = case::load(case)?;
+            let notes: String = loaded.pair.findings().iter().map(|f| format!("note: {f}\n")).collect();
+            Ok(format!(
+                "{notes}{}: valid; {} positions, contact ratio {:.3}\n",
+                case.display(),
+                loaded.mesh_cycles.len(),
+                loaded.pair.contact_ratio()
+            ))
+        }
+        Command::Init { kind, file } => init(kind, file.as_deref()),
+        Command::Explain { key } => explain(key.as_deref()),
+        Command::Schema => Ok(format!("{}\n", serde_json::to_string_pretty(&reference::schema())?)),
+    }
+}
+
+fn run_case(file: &Path, out: Option<&Path>, threads: Option<usize>) -> anyhow::Result<String> {
+    let loaded = case::load(file)?;
+    let target = match out {
+        Some(folder) => folder.to_path_buf(),
+        None => Path::new("out").join(file.file_stem().unwrap_or_default()),
+    };
+    let mut pool = rayon::ThreadPoolBuilder::new();
+    if let Some(count) = threads {
+        if count == 0 {
+            bail!("--threads must be at least 1");
+        }
+        pool = pool.num_threads(count);
+    }
+    let pool = pool.build().context("threads cannot be started")?;
+    let observer = progress::Terminal::new();
+    let finished = pool.install(|| run::spur_pair(&loaded, &target, &observer));
+    observer.finish();
+    let finished = finished?;
+    if !finished.converged {
+        eprintln!("warning: some positions did not converge; see the status column of series.csv");
+    }
+    Ok(format!("{}  results in {}\n", finished.screen, finished.folder.display()))
+}
+
+fn init(kind: &str, file: Option<&Path>) -> anyhow::Result<String> {
+    if !template::KINDS.contains(&kind) {
+        bail!("there is no kind of case \"{kind}\"; known: {}", template::KINDS.join(", "));
+    }
+    let default = PathBuf::from(format!("{kind}.toml"));
+    let file = file.unwrap_or(&default);
+    if file.exists() {
+        bail!("{} exists; choose another name", file.display());
+    }
+    std::fs::write(file, template::spur_pair()).with_context(|| format!("{} cannot be written", file.display()))?;
+    Ok(format!("wrote {}; run it with: gearwright run {}\n", file.display(), file.display()))
+}
+
+fn explain(key: Option<&str>) -> anyhow::Result<String> {
+    let all = reference::keys();
+    let Some(key) = key else {
+        return Ok(all.iter().filter(|k| !k.is_section).map(|k| format!("{}\n", k.key)).collect());
+    };
+    let found: Vec<_> = all.iter().filter(|k| k.key == key || k.key.ends_with(&format!(".{key}"))).collect();
+    if found.is_empty() {
+        let likeness = |k: &reference::KeyReference| strsim::jaro_winkler(key, k.key.rsplit('.').next().unwrap_or_default());
+        let near = all.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
+        bail!("there is no key \"{key}\"; the nearest is \"{}\"", near.map_or("", |k| &k.key));
+    }
+    let mut text = String::new();
+    for entry in found {
+        let state = match (&entry.default, entry.required) {
+            (Some(default), _) => format!("default {default}"),
+            (None, true) => "required".to_owned(),
+            (None, false) => "optional".to_owned(),
+        };
+        text.push_str(&format!("{}\n  {}\n  allowed: {}; {state}\n", entry.key, entry.text, entry.allowed));
+    }
+    Ok(text)
+}

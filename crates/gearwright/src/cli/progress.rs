@@ -1,0 +1,59 @@
+//! Progress on the terminal: a bar where there is one, plain lines of stages otherwise.
+
+use std::io::IsTerminal;
+use std::sync::Mutex;
+
+use fecm::statics::Observer;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::run::RunObserver;
+
+/// Shows progress on standard error.
+pub struct Terminal {
+    bar: Mutex<Option<ProgressBar>>,
+    interactive: bool,
+}
+
+impl Terminal {
+    /// A bar if standard error is a terminal.
+    pub fn new() -> Self {
+        Self { bar: Mutex::new(None), interactive: std::io::stderr().is_terminal() }
+    }
+
+    /// Clears the bar.
+    pub fn finish(&self) {
+        if let Some(bar) = self.bar.lock().ok().and_then(|mut bar| bar.take()) {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl RunObserver for Terminal {
+    fn stage(&self, name: &str) {
+        self.finish();
+        if !self.interactive {
+            eprintln!("{name} ...");
+            return;
+        }
+        let style = ProgressStyle::with_template("{spinner} {msg} {wide_bar} {pos}/{len} {eta}");
+        let bar = ProgressBar::new(0).with_message(name.to_owned());
+        if let Ok(style) = style {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(std::time::Duration::from_millis(120));
+        if let Ok(mut current) = self.bar.lock() {
+            *current = Some(bar);
+        }
+    }
+}
+
+impl Observer for Terminal {
+    fn advanced(&self, done: usize, total: usize) {
+        if let Ok(bar) = self.bar.lock()
+            && let Some(bar) = bar.as_ref()
+        {
+            bar.set_length(total as u64);
+            bar.set_position(done as u64);
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! Figures: line charts and flank maps as SVG and PNG. The only place that names the plotting library.
+
+pub mod statics;
+
+use std::path::Path;
+
+use kuva::prelude::{ColorMap, Heatmap, Layout, LegendPosition, LinePlot, Plot, ReferenceLine, render_to_png, render_to_svg};
+
+/// Line patterns, told apart without colour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Pattern {
+    /// Unbroken.
+    #[default]
+    Solid,
+    /// Dashed.
+    Dashed,
+    /// Dotted.
+    Dotted,
+    /// Dash-dotted.
+    DashDotted,
+}
+
+/// One line of a chart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// Name in the legend; empty for none.
+    pub name: String,
+    /// Points.
+    pub points: Vec<(f64, f64)>,
+    /// Pattern.
+    pub pattern: Pattern,
+    /// Colour.
+    pub colour: &'static str,
+}
+
+/// Colours of lines in order: black first, then distinct for colour-blind readers (Okabe and Ito).
+pub const COLOURS: [&str; 6] = ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00"];
+
+/// A chart of lines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chart {
+    /// Heading.
+    pub title: String,
+    /// Abscissa with unit.
+    pub x_label: String,
+    /// Ordinate with unit.
+    pub y_label: String,
+    /// Lines.
+    pub lines: Vec<Line>,
+    /// Whether the ordinate starts at zero.
+    pub from_zero: bool,
+    /// Whether both axes are logarithmic.
+    pub logarithmic: bool,
+}
+
+/// A map of a quantity over a flank.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlankMap {
+    /// Heading.
+    pub title: String,
+    /// Quantity with unit.
+    pub quantity: String,
+    /// Face positions from and to (mm).
+    pub face: (f64, f64),
+    /// Roll distances from and to (mm).
+    pub roll: (f64, f64),
+    /// Values, rows from the largest roll distance down, columns along the face.
+    pub values: Vec<Vec<f64>>,
+    /// Named roll distances (mm).
+    pub landmarks: Vec<(String, f64)>,
+}
+
+/// Pixels per unit of the PNG files.
+const PNG_SCALE: f32 = 2.0;
+
+fn journal(layout: Layout) -> Layout {
+    layout
+        .with_width(720.0)
+        .with_height(460.0)
+        .with_title_size(15)
+        .with_label_size(14)
+        .with_tick_size(12)
+        .with_body_size(12)
+        .with_box_axes()
+        .with_show_grid(false)
+}
+
+fn save(make: impl Fn() -> (Vec<Plot>, Layout), folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
+    let write = |path: &Path, bytes: &[u8]| std::fs::write(path, bytes).map_err(|e| format!("{}: {e}", path.display()));
+    let (plots, layout) = make();
+    write(&folder(&format!("{name}.svg")), render_to_svg(plots, layout).as_bytes())?;
+    let (plots, layout) = make();
+    write(&folder(&format!("{name}.png")), &render_to_png(plots, layout, PNG_SCALE)?)
+}
+
+impl Chart {
+    /// Writes `name.svg` and `name.png`.
+    ///
+    /// # Errors
+    /// What the file system or the renderer says.
+    pub fn save(&self, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
+        save(|| self.draw(), folder, name)
+    }
+
+    fn draw(&self) -> (Vec<Plot>, Layout) {
+        let plots: Vec<Plot> = self
+            .lines
+            .iter()
+            .map(|line| {
+                let mut plot = LinePlot::new().with_data(line.points.clone()).with_color(line.colour).with_stroke_width(1.8);
+                plot = match line.pattern {
+                    Pattern::Solid => plot,
+                    Pattern::Dashed => plot.with_dashed(),
+                    Pattern::Dotted => plot.with_dotted(),
+                    Pattern::DashDotted => plot.with_dashdot(),
+                };
+                if line.name.is_empty() { plot } else { plot.with_legend(line.name.clone()) }.into()
+            })
+            .collect();
+        let mut layout = Layout::auto_from_plots(&plots)
+            .with_title(self.title.clone())
+            .with_x_label(self.x_label.clone())
+            .with_y_label(self.y_label.clone())
+            .with_legend_position(LegendPosition::OutsideRightTop);
+        if self.from_zero {
+            layout = layout.with_y_axis_min(0.0);
+        }
+        if self.logarithmic {
+            layout = layout.with_log_scale();
+        }
+        (plots, journal(layout))
+    }
+}
+
+impl FlankMap {
+    /// Writes `name.svg` and `name.png`.
+    ///
+    /// # Errors
+    /// What the file system or the renderer says.
+    pub fn save(&self, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
+        save(|| self.draw(), folder, name)
+    }
+
+    fn draw(&self) -> (Vec<Plot>, Layout) {
+        let map = Heatmap::new()
+            .with_data(self.values.clone())
+            .with_x_range(self.face.0, self.face.1)
+            .with_y_range(self.roll.0, self.roll.1)
+            .with_cell_size(1.0)
+            .with_color_map(ColorMap::Inferno)
+            .with_legend(self.quantity.clone());
+        let plots: Vec<Plot> = vec![map.into()];
+        let mut layout = Layout::auto_from_plots(&plots)
+            .with_title(self.title.clone())
+            .with_x_label("Face position (mm)")
+            .with_y_label("Roll distance (mm)");
+        for (label, roll) in &self.landmarks {
+            layout = layout
+                .with_reference_line(ReferenceLine::horizontal(*roll).with_color("#ffffff").with_label(label.clone()));
+        }
+        (plots, journal(layout))
+    }
+}

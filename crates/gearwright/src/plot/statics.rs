@@ -1,0 +1,183 @@
+//! Figures of a static analysis.
+
+use std::collections::BTreeSet;
+
+use fecm::statics::{PairState, PositionResult};
+use gear_geom::{GearPair, Member};
+
+use super::{COLOURS, Chart, FlankMap, Line, Pattern};
+
+const CYCLE: &str = "Mesh cycle";
+
+fn line(name: &str, index: usize, pattern: Pattern, points: Vec<(f64, f64)>) -> Line {
+    Line { name: name.into(), points, pattern, colour: COLOURS[index % COLOURS.len()] }
+}
+
+fn over_cycle(series: &[PositionResult], origin: f64, value: impl Fn(&PositionResult) -> Option<f64>) -> Vec<(f64, f64)> {
+    series.iter().filter_map(|r| value(r).map(|v| (r.mesh_cycle + origin, v))).collect()
+}
+
+/// Transmission error, loaded and unloaded.
+#[must_use]
+pub fn transmission_error(title: &str, series: &[PositionResult], origin: f64) -> Chart {
+    let loaded = over_cycle(series, origin, |r| Some(r.static_transmission_error * 1e6));
+    let unloaded = over_cycle(series, origin, |r| Some(r.no_load_transmission_error * 1e6));
+    let mut lines = vec![line("static", 0, Pattern::Solid, loaded)];
+    if unloaded.iter().any(|p| p.1.abs() > 1e-3) {
+        lines.push(line("no load", 1, Pattern::Dashed, unloaded));
+    }
+    Chart {
+        title: title.into(),
+        x_label: CYCLE.into(),
+        y_label: "Transmission error (um)".into(),
+        lines,
+        from_zero: false,
+        logarithmic: false,
+    }
+}
+
+/// Mesh stiffness by average and local slope.
+#[must_use]
+pub fn mesh_stiffness(title: &str, series: &[PositionResult], origin: f64) -> Chart {
+    let mut lines = vec![
+        line("local slope", 0, Pattern::Solid, over_cycle(series, origin, |r| r.stiffness_local_slope.map(|k| k * 1e-6))),
+        line("average slope", 1, Pattern::Dashed, over_cycle(series, origin, |r| r.stiffness_average_slope.map(|k| k * 1e-6))),
+    ];
+    let differences = over_cycle(series, origin, |r| r.stiffness_local_slope_difference.map(|k| k * 1e-6));
+    if !differences.is_empty() {
+        lines.push(line("local, +-1 % torque", 2, Pattern::Dotted, differences));
+    }
+    Chart {
+        title: title.into(),
+        x_label: CYCLE.into(),
+        y_label: "Mesh stiffness (N/um)".into(),
+        lines,
+        from_zero: false,
+        logarithmic: false,
+    }
+}
+
+/// A quantity of every tooth pair.
+#[must_use]
+pub fn per_pair(
+    title: &str,
+    y_label: &str,
+    series: &[PositionResult],
+    origin: f64,
+    value: impl Fn(&PairState) -> f64,
+) -> Chart {
+    let pairs: BTreeSet<i32> = series.iter().flat_map(|r| r.loaded_pairs().map(|p| p.pair)).collect();
+    let patterns = [Pattern::Solid, Pattern::Dashed, Pattern::DashDotted, Pattern::Dotted];
+    let lines = pairs.iter().enumerate().map(|(index, &pair)| {
+        let of_pair = |r: &PositionResult| r.pairs.iter().find(|p| p.pair == pair).map_or(0.0, &value);
+        let points = over_cycle(series, origin, |r| Some(of_pair(r)));
+        // keep one zero at either end of the engagement
+        let loaded: Vec<bool> = points.iter().map(|p| p.1 > 0.0).collect();
+        let near = |k: usize| loaded[k] || (k > 0 && loaded[k - 1]) || loaded.get(k + 1).is_some_and(|&l| l);
+        let points = points.iter().enumerate().filter(|(k, _)| near(*k)).map(|(_, p)| *p).collect();
+        line(&format!("pair {pair}"), index, patterns[index % patterns.len()], points)
+    });
+    Chart {
+        title: title.into(),
+        x_label: CYCLE.into(),
+        y_label: y_label.into(),
+        lines: lines.collect(),
+        from_zero: true,
+        logarithmic: false,
+    }
+}
+
+/// Transmission error over the mesh cycle for a selection of torques.
+#[must_use]
+pub fn torque_curves(title: &str, map: &[Vec<PositionResult>], origin: f64) -> Chart {
+    let lines = selection(map.len(), 6).into_iter().enumerate().filter_map(|(index, k)| {
+        let torque = map[k].first()?.torque;
+        let points = over_cycle(&map[k], origin, |r| Some(r.static_transmission_error * 1e6));
+        Some(line(&format!("{torque:.4} N m"), index, Pattern::Solid, points))
+    });
+    Chart {
+        title: title.into(),
+        x_label: CYCLE.into(),
+        y_label: "Transmission error (um)".into(),
+        lines: lines.collect(),
+        from_zero: true,
+        logarithmic: false,
+    }
+}
+
+/// Mesh force over transmission error at a selection of positions.
+#[must_use]
+pub fn force_deflection(title: &str, map: &[Vec<PositionResult>], origin: f64) -> Chart {
+    let positions = map.first().map_or(0, Vec::len);
+    let patterns = [Pattern::Solid, Pattern::Dashed, Pattern::DashDotted, Pattern::Dotted];
+    let lines = selection(positions, 5).into_iter().enumerate().map(|(index, k)| {
+        let of_torque = |r: &Vec<PositionResult>| r.get(k).map(|p| (p.static_transmission_error * 1e6, p.mesh_force * 1e-3));
+        let at = map.first().and_then(|r| r.get(k)).map_or(0.0, |p| p.mesh_cycle + origin);
+        line(&format!("mesh cycle {at:.2}"), index, patterns[index % 4], map.iter().filter_map(of_torque).collect())
+    });
+    Chart {
+        title: title.into(),
+        x_label: "Transmission error (um)".into(),
+        y_label: "Mesh force (kN)".into(),
+        lines: lines.collect(),
+        from_zero: true,
+        logarithmic: false,
+    }
+}
+
+/// At most `count` indices spread evenly over `0..total`, ends included.
+fn selection(total: usize, count: usize) -> Vec<usize> {
+    if total <= count {
+        return (0..total).collect();
+    }
+    (0..count).map(|k| k * (total - 1) / (count - 1)).collect()
+}
+
+/// Largest pressure that each place of the pinion's flank sees over the positions (MPa).
+#[must_use]
+pub fn flank_pressure(title: &str, series: &[PositionResult], pair: &GearPair, mirrored: bool) -> Option<FlankMap> {
+    const ROWS: usize = 120;
+    let landmarks = pair.landmarks(Member::Pinion);
+    let (low, high) = (landmarks.sap.roll_distance, landmarks.eap.roll_distance);
+    let margin = 0.03 * (high - low);
+    let (low, high) = (low - margin, high + margin);
+    let patch = series.iter().flat_map(|r| &r.patches).next()?;
+    let half = patch.face.len();
+    let columns = if mirrored { 2 * half } else { half };
+    let span = patch.cell[1] * columns as f64;
+    let mut values = vec![vec![0.0_f64; columns]; ROWS];
+    for patch in series.iter().flat_map(|r| &r.patches) {
+        for (roll, pressures) in patch.pinion_roll.iter().zip(&patch.pressure) {
+            // the cell's extent in roll distance
+            let reach = 0.5 * patch.cell[0] * pair.pinion().base_radius() / roll.max(1e-9);
+            let row_of = |s: f64| ((high - s) / (high - low) * ROWS as f64).floor().clamp(0.0, ROWS as f64 - 1.0) as usize;
+            for row in row_of(roll + reach)..=row_of(roll - reach) {
+                for (j, pressure) in pressures.iter().enumerate() {
+                    let value = pressure * 1e-6;
+                    let mut put = |column: usize| values[row][column] = values[row][column].max(value);
+                    if mirrored {
+                        put(half + j);
+                        put(half - 1 - j);
+                    } else {
+                        put(j);
+                    }
+                }
+            }
+        }
+    }
+    let named = [
+        ("SAP", Some(landmarks.sap)),
+        ("LPSTC", landmarks.lpstc),
+        ("pitch", Some(landmarks.pitch)),
+        ("HPSTC", landmarks.hpstc),
+        ("EAP", Some(landmarks.eap)),
+    ];
+    Some(FlankMap {
+        title: title.into(),
+        quantity: "MPa".into(),
+        face: (-0.5e3 * span, 0.5e3 * span),
+        roll: (low * 1e3, high * 1e3),
+        values,
+        landmarks: named.into_iter().filter_map(|(n, l)| l.map(|l| (n.to_owned(), l.roll_distance * 1e3))).collect(),
+    })
+}
