@@ -22,7 +22,7 @@ use crate::condense::CondensedBody;
 use crate::element::ReferenceQuad;
 use crate::error::FecmError;
 use crate::face::{FaceBasis, FaceModel, Parity};
-use crate::linalg::{add_product, product, symmetrise};
+use crate::linalg::{add_scaled, column_slice, column_slice_mut, add_product, product, symmetrise};
 use crate::material::Material;
 use crate::mesh::{MeshDensity, SectorMesh};
 use crate::ring::{Arc, cyclic_cut_compliance};
@@ -471,27 +471,27 @@ fn contract(
     loaded: &[Station],
     rows: impl Fn(&Station) -> &Vec<(usize, Vector2<f64>)>,
 ) -> Mat<f64> {
-    // first over the observed nodes: rows station * functions + function, columns flank unknowns
-    let mut half = Mat::<f64>::zeros(observed.len() * functions, matrix.ncols());
-    for column in 0..matrix.ncols() {
-        let source = matrix.as_ref().col(column);
-        for (i, station) in observed.iter().enumerate() {
-            for &(slot, weight) in rows(station) {
-                for k in 0..functions {
-                    let at = 2 * (slot * functions + k);
-                    half[(i * functions + k, column)] += weight.x * source[at] + weight.y * source[at + 1];
-                }
-            }
-        }
-    }
     let mut result = Mat::zeros(observed.len() * functions, loaded.len() * functions);
+    let mut spread = vec![0.0; matrix.nrows()];
     for (j, station) in loaded.iter().enumerate() {
         for k in 0..functions {
-            let column = j * functions + k;
+            // displacements of all observed nodes by this load
+            spread.fill(0.0);
             for &(slot, weight) in &station.load {
                 let at = 2 * (slot * functions + k);
-                for row in 0..observed.len() * functions {
-                    result[(row, column)] += weight.x * half[(row, at)] + weight.y * half[(row, at + 1)];
+                let columns = [(at, weight.x), (at + 1, weight.y)];
+                for (column, share) in columns {
+                    add_scaled(&mut spread, share, column_slice(matrix, column));
+                }
+            }
+            let target = column_slice_mut(&mut result, j * functions + k);
+            for (station, target) in observed.iter().zip(target.chunks_exact_mut(functions)) {
+                for &(slot, weight) in rows(station) {
+                    let at = 2 * slot * functions;
+                    let motions = spread[at..at + 2 * functions].chunks_exact(2);
+                    for (value, motion) in target.iter_mut().zip(motions) {
+                        *value += weight.x * motion[0] + weight.y * motion[1];
+                    }
                 }
             }
         }

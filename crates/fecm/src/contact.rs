@@ -12,7 +12,7 @@ use faer::Mat;
 
 use crate::body::{GearBody, Station};
 use crate::error::FecmError;
-use crate::linalg::{add_product, product};
+use crate::linalg::{add_block, add_product, column_slice, column_slice_mut, product};
 use crate::nearfield::{FaceCells, NearField};
 use crate::search::{Member, NoCell, OpposedPoints, PlacedPair};
 
@@ -162,9 +162,7 @@ impl ContactGrid {
                             subtract_depth(&mut modal, functions, |d| near.depth(index, family_index, d));
                         }
                         let expanded = expand(&modal, &values, functions);
-                        let (rows, columns) = (expanded.nrows(), expanded.ncols());
-                        let mut block = total.as_mut().submatrix_mut(starts[i] * count, starts[j] * count, rows, columns);
-                        block += &expanded;
+                        add_block(&mut total, starts[i] * count, starts[j] * count, 1.0, &expanded);
                     }
                 }
             }
@@ -199,9 +197,7 @@ impl ContactGrid {
         for (pair, &start) in self.pairs.iter().zip(starts) {
             for i in 0..pair.rows.len() {
                 for j in i..pair.rows.len() {
-                    let mut block =
-                        total.as_mut().submatrix_mut((start + i) * count, (start + j) * count, count, count);
-                    block += near.surface(j - i);
+                    add_block(total, (start + i) * count, (start + j) * count, 1.0, near.surface(j - i));
                 }
             }
         }
@@ -213,8 +209,7 @@ fn subtract_depth<'a>(modal: &mut Mat<f64>, functions: usize, depth: impl Fn(usi
     let rows = modal.nrows() / functions;
     for i in 0..rows {
         for j in 0..rows {
-            let mut block = modal.as_mut().submatrix_mut(i * functions, j * functions, functions, functions);
-            block -= depth(i.abs_diff(j));
+            add_block(modal, i * functions, j * functions, -1.0, depth(i.abs_diff(j)));
         }
     }
 }
@@ -240,9 +235,8 @@ fn expand(modal: &Mat<f64>, values: &[Vec<f64>], functions: usize) -> Mat<f64> {
 }
 
 fn mirror_upper(matrix: &mut Mat<f64>) {
+    let upper = matrix.transpose().to_owned();
     for j in 0..matrix.ncols() {
-        for i in 0..j {
-            matrix[(j, i)] = matrix[(i, j)];
-        }
+        column_slice_mut(matrix, j)[j + 1..].copy_from_slice(&column_slice(&upper, j)[j + 1..]);
     }
 }

@@ -33,13 +33,38 @@ pub fn add_product(c: MatMut<'_, f64>, alpha: f64, a: MatRef<'_, f64>, b: MatRef
     matmul(c, Accum::Add, a, b, alpha, Par::Seq);
 }
 
+/// A column as a slice.
+#[must_use]
+pub fn column_slice(a: &Mat<f64>, column: usize) -> &[f64] {
+    a.col_as_slice(column)
+}
+
+/// A column as a slice to write.
+pub fn column_slice_mut(a: &mut Mat<f64>, column: usize) -> &mut [f64] {
+    a.col_as_slice_mut(column)
+}
+
+/// `y += alpha * x`.
+pub fn add_scaled(y: &mut [f64], alpha: f64, x: &[f64]) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += alpha * x;
+    }
+}
+
+/// `c[row.., column..] += alpha * block`.
+pub fn add_block(c: &mut Mat<f64>, row: usize, column: usize, alpha: f64, block: &Mat<f64>) {
+    let height = block.nrows();
+    for j in 0..block.ncols() {
+        add_scaled(&mut c.col_as_slice_mut(column + j)[row..row + height], alpha, block.col_as_slice(j));
+    }
+}
+
 /// Replaces a square matrix by its symmetric part.
 pub fn symmetrise(a: &mut Mat<f64>) {
+    let transposed = a.transpose().to_owned();
     for j in 0..a.ncols() {
-        for i in 0..j {
-            let mean = 0.5 * (a[(i, j)] + a[(j, i)]);
-            a[(i, j)] = mean;
-            a[(j, i)] = mean;
+        for (value, other) in a.col_as_slice_mut(j).iter_mut().zip(transposed.col_as_slice(j)) {
+            *value = 0.5 * (*value + other);
         }
     }
 }

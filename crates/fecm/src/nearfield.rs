@@ -11,10 +11,13 @@
 //!
 //! Tables hold values per index difference on a uniform grid and are made once per cell size.
 
+use std::sync::OnceLock;
+
 use faer::Mat;
 
 use crate::face::{FaceBasis, FaceModel};
 use crate::halfspace::{rectangle_displacement, strip_displacement};
+use crate::linalg::column_slice;
 use crate::material::Material;
 
 /// Cells across the face that carry the contact.
@@ -40,103 +43,124 @@ impl FaceCells {
 }
 
 /// One body of the near field.
-#[derive(Debug, Clone, Copy)]
-pub struct NearBody<'a> {
+#[derive(Debug, Clone)]
+pub struct NearBody {
     /// Material.
-    pub material: &'a Material,
+    pub material: Material,
     /// Face bases of the body's families.
-    pub bases: &'a [&'a FaceBasis],
+    pub bases: Vec<FaceBasis>,
     /// Matching depth (m).
     pub depth: f64,
 }
 
-/// Near-field influence of one cell size on one body pair.
+/// What the influence of one cell size on one body pair rests on.
+#[derive(Debug, Clone)]
+pub struct NearFieldSpec {
+    /// Behaviour along the face.
+    pub model: FaceModel,
+    /// Pinion and wheel.
+    pub bodies: [NearBody; 2],
+    /// Cell size along the profile (m).
+    pub cell: f64,
+    /// Cells along the face.
+    pub face: FaceCells,
+    /// Whether mirror loads correct the free ends of the face.
+    pub edge_correction: bool,
+}
+
+/// Near-field influence of one cell size on one body pair, by difference of rows. Rows are computed when first asked for.
 #[derive(Debug)]
 pub struct NearField {
-    /// `[row difference]`: cells x cells, displacement per unit cell force, both bodies, free edges included (m/N).
-    surface: Vec<Mat<f64>>,
-    /// `[body][family][row difference]`: functions x functions, to be subtracted from the finite-element compliance.
-    depth: [Vec<Vec<Mat<f64>>>; 2],
+    spec: NearFieldSpec,
+    rows: Vec<OnceLock<RowInfluence>>,
+}
+
+/// Influence between two rows.
+#[derive(Debug)]
+struct RowInfluence {
+    /// Cells x cells, displacement per unit cell force, both bodies, free edges included (m/N).
+    surface: Mat<f64>,
+    /// `[body][family]`: functions x functions, to be subtracted from the finite-element compliance.
+    depth: [Vec<Mat<f64>>; 2],
 }
 
 /// Mirror loads reach this many matching depths.
 const EDGE_REACH: f64 = 8.0;
 
 impl NearField {
-    /// Tables for profile cells of width `cell` (m) and up to `rows` rows.
+    /// Largest difference of rows.
+    pub const MOST_ROWS: usize = 4096;
+
+    /// Prepares the influence of a cell size.
     #[must_use]
-    pub fn new(
-        model: FaceModel,
-        bodies: [NearBody<'_>; 2],
-        cell: f64,
-        rows: usize,
-        face: &FaceCells,
-        edge_correction: bool,
-    ) -> Self {
-        let mut surface = Vec::with_capacity(rows);
-        let mut depth = [Vec::new(), Vec::new()];
-        for row in 0..rows {
-            let x = row as f64 * cell;
-            surface.push(match model {
-                FaceModel::Solid { .. } => solid_surface(&bodies, x, cell, face, edge_correction),
-                _ => plane_surface(model, &bodies, x, cell),
-            });
-        }
-        for (body, tables) in bodies.iter().zip(&mut depth) {
-            for basis in body.bases {
-                let table = (0..rows).map(|row| {
-                    let x = row as f64 * cell;
-                    match model {
-                        FaceModel::Solid { .. } => solid_depth(body, basis, x, cell),
-                        _ => plane_depth(model, body, basis, x, cell),
-                    }
-                });
-                tables.push(table.collect());
-            }
-        }
-        Self { surface, depth }
+    pub fn new(spec: NearFieldSpec) -> Self {
+        Self { spec, rows: std::iter::repeat_with(OnceLock::new).take(Self::MOST_ROWS).collect() }
     }
 
-    /// Surface influence between cells of rows this far apart.
+    fn row(&self, difference: usize) -> &RowInfluence {
+        self.rows[difference].get_or_init(|| self.spec.row(difference as f64 * self.spec.cell))
+    }
+
+    /// Surface influence between cells of rows this far apart; `row_difference` below [`Self::MOST_ROWS`].
     #[must_use]
     pub fn surface(&self, row_difference: usize) -> &Mat<f64> {
-        &self.surface[row_difference]
+        &self.row(row_difference).surface
     }
 
     /// Depth influence between face functions of rows this far apart, for body 0 or 1.
     #[must_use]
     pub fn depth(&self, body: usize, family: usize, row_difference: usize) -> &Mat<f64> {
-        &self.depth[body][family][row_difference]
+        &self.row(row_difference).depth[body][family]
     }
 }
 
-fn plane_surface(model: FaceModel, bodies: &[NearBody<'_>; 2], x: f64, cell: f64) -> Mat<f64> {
+impl NearFieldSpec {
+    fn row(&self, x: f64) -> RowInfluence {
+        let (model, cell) = (self.model, self.cell);
+        let solid = matches!(model, FaceModel::Solid { .. });
+        let surface = if solid {
+            solid_surface(&self.bodies, x, cell, &self.face, self.edge_correction)
+        } else {
+            plane_surface(model, &self.bodies, x, cell)
+        };
+        let depth = [0, 1].map(|index: usize| {
+            let body = &self.bodies[index];
+            let of_family = |basis: &FaceBasis| {
+                if solid { solid_depth(body, basis, x, cell) } else { plane_depth(model, body, basis, x, cell) }
+            };
+            body.bases.iter().map(of_family).collect()
+        });
+        RowInfluence { surface, depth }
+    }
+}
+
+fn plane_surface(model: FaceModel, bodies: &[NearBody; 2], x: f64, cell: f64) -> Mat<f64> {
     let sum: f64 = bodies
         .iter()
         .map(|body| {
             let width = body.bases.first().map_or(1.0, |basis| basis.width());
-            strip_displacement(body.material, model == FaceModel::PlaneStrain, 0.5 * cell, x, 0.0) / width
+            strip_displacement(&body.material, model == FaceModel::PlaneStrain, 0.5 * cell, x, 0.0) / width
         })
         .sum();
     Mat::from_fn(1, 1, |_, _| sum)
 }
 
-fn plane_depth(model: FaceModel, body: &NearBody<'_>, basis: &FaceBasis, x: f64, cell: f64) -> Mat<f64> {
+fn plane_depth(model: FaceModel, body: &NearBody, basis: &FaceBasis, x: f64, cell: f64) -> Mat<f64> {
     let strain = model == FaceModel::PlaneStrain;
-    let value = strip_displacement(body.material, strain, 0.5 * cell, x, body.depth) / basis.width();
+    let value = strip_displacement(&body.material, strain, 0.5 * cell, x, body.depth) / basis.width();
     Mat::from_fn(1, 1, |_, _| value)
 }
 
 fn solid_surface(
-    bodies: &[NearBody<'_>; 2],
+    bodies: &[NearBody; 2],
     x: f64,
     cell: f64,
     face: &FaceCells,
     edge_correction: bool,
 ) -> Mat<f64> {
     let count = face.centres.len();
-    let at = |body: &NearBody<'_>, z: f64, depth: f64| {
-        rectangle_displacement(body.material, 0.5 * cell, 0.5 * face.width, x, z, depth)
+    let at = |body: &NearBody, z: f64, depth: f64| {
+        rectangle_displacement(&body.material, 0.5 * cell, 0.5 * face.width, x, z, depth)
     };
     // one table over the distances that occur on the uniform grid
     let direct: Vec<f64> = (0..2 * count).map(|k| bodies.iter().map(|b| at(b, k as f64 * face.width, 0.0)).sum()).collect();
@@ -156,11 +180,11 @@ fn solid_surface(
 
 /// Local difference of the loads mirrored at the free ends of a body's face.
 fn edge_part(
-    body: &NearBody<'_>,
+    body: &NearBody,
     face: &FaceCells,
     i: usize,
     j: usize,
-    at: &impl Fn(&NearBody<'_>, f64, f64) -> f64,
+    at: &impl Fn(&NearBody, f64, f64) -> f64,
 ) -> f64 {
     let width = body.bases.first().map_or(0.0, |basis| basis.width());
     let (z, source) = (face.centres[i], face.centres[j]);
@@ -179,20 +203,23 @@ fn edge_part(
 }
 
 /// `M^-1 [ iint psi(z) g(x, z - z'; h) psi(z') ] M^-1` over the body's face.
-fn solid_depth(body: &NearBody<'_>, basis: &FaceBasis, x: f64, cell: f64) -> Mat<f64> {
+fn solid_depth(body: &NearBody, basis: &FaceBasis, x: f64, cell: f64) -> Mat<f64> {
     let width = basis.width();
     let count = ((3.0 * width / body.depth).ceil() as usize).clamp(16, 400);
     let dz = width / count as f64;
     let kernel: Vec<f64> = (0..count)
-        .map(|k| rectangle_displacement(body.material, 0.5 * cell, 0.5 * dz, x, k as f64 * dz, body.depth))
+        .map(|k| rectangle_displacement(&body.material, 0.5 * cell, 0.5 * dz, x, k as f64 * dz, body.depth))
         .collect();
     let norms = basis.plane_norms();
     let dual = Mat::from_fn(count, norms.len(), |q, k| {
         let z = -0.5 * width + (q as f64 + 0.5) * dz;
         basis.value(basis.plane_degrees()[k], z) * dz / norms[k]
     });
+    // the kernel as one row of its Toeplitz matrix, mirrored: row q starts at count - 1 - q
+    let mirrored: Vec<f64> = kernel.iter().rev().chain(&kernel[1..]).copied().collect();
     let spread = Mat::from_fn(count, norms.len(), |q, k| {
-        (0..count).map(|r| kernel[q.abs_diff(r)] * dual[(r, k)]).sum::<f64>()
+        let row = &mirrored[count - 1 - q..2 * count - 1 - q];
+        row.iter().zip(column_slice(&dual, k)).map(|(g, d)| g * d).sum::<f64>()
     });
     crate::linalg::product(dual.transpose(), spread.as_ref())
 }

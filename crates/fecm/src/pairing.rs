@@ -16,13 +16,38 @@ const EARLY_AND_LATE: f64 = 0.9;
 pub struct Pairing {
     pair: GearPair,
     profiles: [FlankProfile; 2],
+    is_modified: bool,
+}
+
+/// Unloaded gears at first touch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Touch {
+    /// Closing rotation of the wheel (rad).
+    pub rotation: f64,
+    /// Nearest places of all pairs that face each other.
+    pub approaches: Vec<Approach>,
+}
+
+/// Where a pair's flanks are nearest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Approach {
+    /// Tooth-pair number.
+    pub pair: i32,
+    /// Arc length from the foot along the master flank (m).
+    pub offset: f64,
+    /// Gap there (m).
+    pub gap: f64,
 }
 
 impl Pairing {
     /// From a gear pair.
     #[must_use]
     pub fn new(pair: &GearPair) -> Self {
-        Self { pair: pair.clone(), profiles: MEMBERS.map(|member| FlankProfile::new(pair.gear(member))) }
+        Self {
+            pair: pair.clone(),
+            profiles: MEMBERS.map(|member| FlankProfile::new(pair.gear(member))),
+            is_modified: MEMBERS.iter().any(|&member| pair.gear(member).is_modified()),
+        }
     }
 
     /// The gear pair.
@@ -125,40 +150,71 @@ impl Pairing {
         of(0) + of(1)
     }
 
-    /// Nearest approach of a pair, modifications included: arc length from the foot and gap (m). Samples `count` steps of `step` (m) on
-    /// either side of the foot, then refines around the best. `None` when the flanks never face each other.
-    pub fn nearest(
-        &self,
-        placed: &PlacedPair,
-        removed: &impl Fn(&OpposedPoints, f64) -> f64,
-        step: f64,
-        count: i32,
-    ) -> Option<(f64, f64)> {
-        const FACE_SAMPLES: i32 = 8;
-        let half = 0.5 * self.common_facewidth();
-        let gap = |offset: f64| {
-            let row = placed.opposed(offset).ok()?;
-            let across = (-FACE_SAMPLES..=FACE_SAMPLES)
-                .map(|k| removed(&row, half * f64::from(k) / f64::from(FACE_SAMPLES)))
-                .fold(f64::INFINITY, f64::min);
-            Some(row.separation + across)
-        };
-        let samples = (-count..=count).filter_map(|k| {
-            let offset = f64::from(k) * step;
-            gap(offset).map(|g| (offset, g))
+    /// First touch of the unloaded gears at a mesh cycle. `None` when no flanks face each other.
+    #[must_use]
+    pub fn first_touch(&self, mesh_cycle: f64) -> Option<Touch> {
+        const TOLERANCE: f64 = 1e-12;
+        const MOST_STEPS: usize = 6;
+        let base = self.base_radius(1);
+        let mut touch = Touch { rotation: 0.0, approaches: Vec::new() };
+        for step in 0..MOST_STEPS {
+            let known = std::mem::take(&mut touch.approaches);
+            for pair in self.candidates(mesh_cycle) {
+                let placed = self.place(pair, mesh_cycle, touch.rotation);
+                let from = known.iter().find(|approach: &&Approach| approach.pair == pair);
+                if step > 0 && from.is_none() {
+                    continue;
+                }
+                touch.approaches.extend(self.nearest(pair, &placed, from));
+            }
+            let least = touch.approaches.iter().map(|a| a.gap).min_by(f64::total_cmp)?;
+            if least.abs() < TOLERANCE {
+                break;
+            }
+            touch.rotation += least / base;
+        }
+        Some(touch)
+    }
+
+    /// Where the flanks of a pair are nearest, modifications included: sampled along the whole flank (or around a known place), then
+    /// refined by halving. `None` when the flanks never face each other.
+    fn nearest(&self, pair: i32, placed: &PlacedPair, known: Option<&Approach>) -> Option<Approach> {
+        const SAMPLES: i32 = 48;
+        const HALVINGS: usize = 26;
+        let spacing = self.shortest_flank() / f64::from(SAMPLES);
+        let gap = |offset: f64| self.gap(pair, &placed.opposed(offset).ok()?);
+        let (middle, span) = known.map_or((0.0, SAMPLES), |approach| (approach.offset, 2));
+        // unmodified flanks are nearest at the foot
+        let span = if self.is_modified || gap(middle).is_none() { span } else { 0 };
+        let samples = (-span..=span).filter_map(|k| {
+            let offset = middle + f64::from(k) * spacing;
+            gap(offset).map(|gap| Approach { pair, offset, gap })
         });
-        let mut best = samples.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let mut reach = step;
-        for _ in 0..30 {
+        let mut best = samples.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+        let mut reach = spacing;
+        for _ in 0..HALVINGS {
             reach *= 0.5;
-            for offset in [best.0 - reach, best.0 + reach] {
-                if let Some(g) = gap(offset)
-                    && g < best.1
+            for offset in [best.offset - reach, best.offset + reach] {
+                if let Some(gap) = gap(offset)
+                    && gap < best.gap
                 {
-                    best = (offset, g);
+                    best = Approach { pair, offset, gap };
                 }
             }
         }
         Some(best)
+    }
+
+    /// Least gap along the face at opposite points (m).
+    fn gap(&self, pair: i32, row: &OpposedPoints) -> Option<f64> {
+        const FACE_SAMPLES: i32 = 8;
+        if !self.is_modified {
+            return Some(row.separation);
+        }
+        let half = 0.5 * self.common_facewidth();
+        let removed = (-FACE_SAMPLES..=FACE_SAMPLES)
+            .map(|k| self.material_removed(pair, row, half * f64::from(k) / f64::from(FACE_SAMPLES)))
+            .min_by(f64::total_cmp)?;
+        Some(row.separation + removed)
     }
 }

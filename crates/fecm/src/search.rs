@@ -72,6 +72,8 @@ pub struct PlacedPair {
     pub master: Member,
     /// Where on the master the unmodified flanks come nearest: roll distance (m).
     pub foot_roll: f64,
+    /// About where on the slave's outline that is: argument of [`FlankProfile::outline`].
+    pub foot_along: f64,
 }
 
 /// One profile position of a pair: opposite points of the two flanks.
@@ -109,11 +111,14 @@ impl PlacedPair {
     pub fn new(pinion: PlacedFlank, wheel: PlacedFlank, pinion_roll: f64, wheel_roll: f64) -> Self {
         let past_tip = |flank: &PlacedFlank, roll: f64| flank.profile.along_at(roll.max(0.0));
         let pinion_past = past_tip(&pinion, pinion_roll);
-        let mut pair = Self { pinion, wheel, master: Member::Pinion, foot_roll: pinion_roll };
+        let foot_along = wheel.profile.along_at(wheel_roll.max(0.0)).min(0.0);
+        let mut pair = Self { pinion, wheel, master: Member::Pinion, foot_roll: pinion_roll, foot_along };
         if pinion_past > 0.0 {
             pair.master = Member::Wheel;
+            pair.foot_along = 0.0;
             pair.foot_roll = pair.foot_of_tip().unwrap_or(wheel_roll);
         } else if past_tip(&wheel, wheel_roll) > 0.0 || wheel_roll < 0.0 {
+            pair.foot_along = 0.0;
             pair.foot_roll = pair.foot_of_tip().unwrap_or(pinion_roll);
         }
         pair
@@ -211,7 +216,7 @@ impl PlacedPair {
         };
         // on external pairs the slave's root lies where the master's tip is
         let slope = -master.profile.sigma * slave.profile.sigma;
-        let mut along = 0.0;
+        let mut along = (self.foot_along + slope * offset).min(end);
         let (mut miss, mut distance) = at(along).ok_or(NoCell::Fillet)?;
         let mut rate = slope;
         let scale = master.profile.base_radius;

@@ -385,6 +385,12 @@ impl Gear {
         HalfToothOutline::new(self)
     }
 
+    /// Whether the flanks differ from plain involutes in their place.
+    #[must_use]
+    pub fn is_modified(&self) -> bool {
+        !self.spec.pitch_errors.is_empty() || self.spec.modification != FlankModification::default()
+    }
+
     /// Material removed (m) from the flank of a tooth at a roll distance and face position, pitch error included.
     #[must_use]
     pub fn material_removed(&self, tooth: i64, roll: f64, z: f64) -> f64 {

@@ -168,8 +168,9 @@ impl ContactProblem<'_> {
         let touch = self.touch();
         let mut gaps: Vec<f64> = (0..self.size()).map(|i| self.open(i, touch) - self.arm[i] * on.closing).collect();
         for (&cell, &force) in cells.iter().zip(&on.forces) {
-            for (i, gap) in gaps.iter_mut().enumerate() {
-                *gap += self.compliance[(i, cell)] * force;
+            let column = self.compliance.col(cell);
+            for (gap, influence) in gaps.iter_mut().zip(column.iter()) {
+                *gap += influence * force;
             }
         }
         gaps

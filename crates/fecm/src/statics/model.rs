@@ -1,5 +1,7 @@
 //! A gear pair made ready for contact: bodies condensed, pairs placed, near fields tabulated.
 
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use gear_geom::GearPair;
@@ -8,7 +10,7 @@ use super::options::PairModelOptions;
 use crate::body::{BodyOptions, BodySizes, GearBody};
 use crate::error::FecmError;
 use crate::face::FaceModel;
-use crate::nearfield::{FaceCells, NearBody, NearField};
+use crate::nearfield::{FaceCells, NearBody, NearField, NearFieldSpec};
 use crate::pairing::Pairing;
 
 /// A gear pair, condensed: statics at any position and torque cost a contact solution each.
@@ -17,6 +19,8 @@ pub struct PairModel {
     pub(super) bodies: [GearBody; 2],
     pub(super) options: PairModelOptions,
     pub(super) face: FaceCells,
+    /// By the bits of the cell size.
+    near_fields: Mutex<BTreeMap<u64, Arc<NearField>>>,
     condensation_time: Duration,
 }
 
@@ -71,7 +75,8 @@ impl PairModel {
         } else {
             FaceCells::new(common, 1, false)
         };
-        Ok(Self { pairing, bodies, options: *options, face, condensation_time: started.elapsed() })
+        let near_fields = Mutex::default();
+        Ok(Self { pairing, bodies, options: *options, face, near_fields, condensation_time: started.elapsed() })
     }
 
     /// Sizes and cost.
@@ -104,16 +109,30 @@ impl PairModel {
         &self.options
     }
 
-    /// Near field of a cell size.
-    pub(super) fn near_field(&self, cell: f64, rows: usize) -> NearField {
-        let bases = [0, 1].map(|i: usize| self.bodies[i].families.iter().map(|f| &f.basis).collect::<Vec<_>>());
-        let near = |i: usize| NearBody {
-            material: &self.bodies[i].material,
-            bases: &bases[i],
-            depth: self.bodies[i].matching_depth(),
-        };
-        let edge = self.options.contact.edge_correction;
-        NearField::new(self.options.face, [near(0), near(1)], cell, rows, &self.face, edge)
+    /// Near field of a cell size; made once.
+    pub(super) fn near_field(&self, cell: f64) -> Arc<NearField> {
+        // a poisoned lock only means that another thread panicked between two complete states
+        let mut fields = self.near_fields.lock().unwrap_or_else(PoisonError::into_inner);
+        let field = fields.entry(cell.to_bits()).or_insert_with(|| {
+            let near = |body: &GearBody| NearBody {
+                material: body.material,
+                bases: body.families.iter().map(|family| family.basis.clone()).collect(),
+                depth: body.matching_depth(),
+            };
+            Arc::new(NearField::new(NearFieldSpec {
+                model: self.options.face,
+                bodies: [near(&self.bodies[0]), near(&self.bodies[1])],
+                cell,
+                face: self.face.clone(),
+                edge_correction: self.options.contact.edge_correction,
+            }))
+        });
+        Arc::clone(field)
+    }
+
+    /// Largest cell that still resolves a flank (m).
+    pub(super) fn widest_cell(&self) -> f64 {
+        self.pairing.shortest_flank() / (4.0 * self.options.contact.cells_per_half_width)
     }
 
     /// Cell size along the profile for a torque (m): a fraction of the Hertz half width of all the load on one pair at the pitch point,
@@ -122,9 +141,9 @@ impl PairModel {
         let line_load = torque / self.pairing.base_radius(1) / self.face_span();
         let half_width = self.pairing.hertz_half_width(self.compliance_modulus(), line_load);
         let cells = self.options.contact.cells_per_half_width;
-        let widest = self.pairing.shortest_flank() / (4.0 * cells);
+        let widest = self.widest_cell();
         let cell = (half_width / cells).min(widest).max(1e-9 * widest);
-        2.0_f64.powf((4.0 * cell.log2()).round() / 4.0)
+        on_ladder(cell)
     }
 
     /// Width of the face that carries load (m).
@@ -146,4 +165,9 @@ impl PairModel {
     pub(super) fn deflection_guess(&self, torque: f64) -> f64 {
         torque / self.pairing.base_radius(1) / self.face_span() * self.compliance_modulus() / (2.0 * 0.07)
     }
+}
+
+/// The nearest size on a ladder of quarter octaves.
+pub(super) fn on_ladder(cell: f64) -> f64 {
+    2.0_f64.powf((4.0 * cell.log2()).round() / 4.0)
 }

@@ -2,13 +2,14 @@
 
 use faer::Mat;
 
-use super::model::PairModel;
+use super::model::{PairModel, on_ladder};
 use super::result::{PairState, PositionResult, PositionStats, PositionStatus, PressurePatch};
 use crate::contact::{ContactGrid, PairGrid};
 use crate::error::FecmError;
 use crate::face::FaceModel;
 use crate::lcp::{ContactProblem, ContactSolution, SolveStats, solve_contact};
 use crate::nearfield::NearField;
+use crate::pairing::Touch;
 use crate::search::{NoCell, OpposedPoints};
 
 /// What one position hands to the next as a start.
@@ -16,9 +17,11 @@ use crate::search::{NoCell, OpposedPoints};
 pub(super) struct Start {
     /// Closing rotation (rad).
     pub rotation: f64,
+    /// Cell size along the profile (m).
+    pub cell: f64,
     /// Rows on either side of the contact's centre.
     pub reach: i32,
-    /// Active cells: pair relative to the mesh cycle's integer part, row, face cell.
+    /// Active cells: pair relative to the mesh cycle's integer part, row, face cell; ascending.
     pub active: Vec<(i32, i32, usize)>,
 }
 
@@ -26,10 +29,9 @@ pub(super) struct Start {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PositionRequest<'a> {
     pub mesh_cycle: f64,
+    /// First touch without load, if the flanks face each other.
+    pub touch: Option<&'a Touch>,
     pub torque: f64,
-    pub cell: f64,
-    pub near: &'a NearField,
-    pub rows: usize,
     pub stiffness_difference: bool,
     pub keep_pressure: bool,
 }
@@ -37,7 +39,9 @@ pub(super) struct PositionRequest<'a> {
 /// Geometry is set again when the rotation moved by more than this fraction: the error of the linear step is then below
 /// `(0.02 delta)^2 / 2 R`, some 1e-5 of `delta`.
 const ROTATION_TOLERANCE: f64 = 0.02;
-const MOST_UPDATES: usize = 12;
+const MOST_UPDATES: usize = 24;
+/// Growth of cells that turn out too small: half an octave, so that positions share near fields.
+const CELL_STEP: f64 = std::f64::consts::SQRT_2;
 /// Relative change of torque for the local slope by differences.
 const TORQUE_STEP: f64 = 0.01;
 
@@ -48,35 +52,31 @@ impl PairModel {
         request: &PositionRequest<'_>,
         start: Option<&Start>,
     ) -> Result<(PositionResult, Option<Start>), FecmError> {
-        let no_load = self.no_load_rotation(request);
-        let Some(no_load) = no_load else {
+        let Some(touch) = request.touch else {
             return Ok((self.untouched(request), None));
         };
+        let no_load = touch.rotation;
         let base_radius = self.pairing.base_radius(1);
         let cells = self.options.contact.cells_per_half_width;
         let mut reach = start.map_or((1.35 * cells).ceil() as i32 + 1, |s| s.reach);
+        let mut cell = start.map_or_else(|| self.cell_size(request.torque), |s| s.cell);
         let mut rotation = match start {
             Some(start) => start.rotation.max(no_load),
             None => no_load + self.deflection_guess(request.torque) / base_radius,
         };
-        let mut warm: Option<Vec<(i32, i32, usize)>> = start.map(|s| s.active.clone());
+        let mut warm = start.cloned();
         let mut stats = PositionStats::default();
-        let mut own_near: Option<NearField> = None;
         let mut outcome: Option<(ContactGrid, Mat<f64>, ContactSolution)> = None;
         let mut status = PositionStatus::NotConverged;
         for update in 0..MOST_UPDATES {
             stats.geometry_updates = update;
-            let grid = self.grid(request, rotation, no_load, reach);
+            let grid = self.grid(request, touch, rotation, cell, reach);
             if grid.size() == 0 {
                 return Ok((self.untouched(request), None));
             }
-            let rows = grid.most_rows();
-            if rows > request.rows && own_near.is_none() {
-                own_near = Some(self.near_field(request.cell, 4 * rows));
-            }
-            let near = own_near.as_ref().unwrap_or(request.near);
-            let compliance = grid.compliance([&self.bodies[0], &self.bodies[1]], self.pairing.tooth_steps(), near)?;
-            let active = warm.as_ref().map(|cells| to_cells(&grid, request.mesh_cycle, cells));
+            let near = self.near_field(cell);
+            let compliance = grid.compliance([&self.bodies[0], &self.bodies[1]], self.pairing.tooth_steps(), &near)?;
+            let active = warm.as_ref().map(|warm| to_cells(&grid, request.mesh_cycle, warm));
             let (gaps, arms) = (grid.gaps(), grid.wheel_arms());
             let problem = ContactProblem {
                 compliance: compliance.as_ref(),
@@ -89,7 +89,8 @@ impl PairModel {
             stats.cells = grid.size();
             let change = solution.approach;
             rotation += change;
-            warm = Some(from_cells(&grid, request.mesh_cycle, &solution.forces));
+            let active = from_cells(&grid, request.mesh_cycle, &solution.forces);
+            warm = Some(Start { rotation, cell, reach, active });
             let crowded = grid_is_crowded(&grid, &solution.forces);
             let moved = change.abs() * base_radius > ROTATION_TOLERANCE * (rotation - no_load).abs() * base_radius;
             let converged = solution.is_converged();
@@ -98,8 +99,11 @@ impl PairModel {
             if !converged {
                 break;
             }
-            if crowded {
-                reach = (reach * 3 + 1) / 2;
+            if crowded && cell < 0.75 * self.widest_cell() {
+                // the contact is wider than the load along the face made believe: coarser cells resolve it as well
+                cell = on_ladder(CELL_STEP * cell);
+            } else if crowded {
+                reach = ((reach * 3 + 1) / 2).min(NearField::MOST_ROWS as i32 / 2 - 1);
             } else if !moved || request.torque == 0.0 {
                 status = if fillet { PositionStatus::FilletContact } else { PositionStatus::Converged };
                 break;
@@ -113,59 +117,28 @@ impl PairModel {
         } else {
             None
         };
-        let next = Start {
-            rotation,
-            reach,
-            active: from_cells(&grid, request.mesh_cycle, &solution.forces),
-        };
         let result = self.collect(request, &grid, &solution, status, rotation, no_load, difference, stats);
-        Ok((result, Some(next)))
+        Ok((result, warm.map(|warm| Start { rotation, ..warm })))
     }
 
-    /// Candidate pairs with rows around their nearest approach, the wheel closed by `rotation`.
-    fn grid(&self, request: &PositionRequest<'_>, rotation: f64, no_load: f64, reach: i32) -> ContactGrid {
+    /// Pairs that the deflection can close, with rows around their nearest approach, the wheel closed by `rotation`.
+    fn grid(&self, request: &PositionRequest<'_>, touch: &Touch, rotation: f64, cell: f64, reach: i32) -> ContactGrid {
         let mut pairs = Vec::new();
-        let deflection = (rotation - no_load).max(0.0) * self.pairing.base_radius(1);
-        for pair in self.pairing.candidates(request.mesh_cycle) {
-            let placed = self.pairing.place(pair, request.mesh_cycle, rotation);
-            let removed = |row: &OpposedPoints, z: f64| self.pairing.material_removed(pair, row, z);
-            let Some((centre, gap)) = self.pairing.nearest(&placed, &removed, request.cell, 2 * reach) else {
-                continue;
-            };
-            // a pair that is apart by more than a fraction of the deflection cannot be closed by the rest of it
-            if gap > 0.5 * deflection.max(1e-3 * request.cell) {
+        let deflection = (rotation - touch.rotation).max(0.0) * self.pairing.base_radius(1);
+        for approach in &touch.approaches {
+            // a pair that was apart by more than the deflection and half as much again stays apart
+            if approach.gap > 1.5 * deflection.max(1e-3 * cell) {
                 continue;
             }
-            let grid = PairGrid::new(pair, placed, request.cell, centre, reach, &self.face, &removed);
+            let pair = approach.pair;
+            let placed = self.pairing.place(pair, request.mesh_cycle, rotation);
+            let removed = |row: &OpposedPoints, z: f64| self.pairing.material_removed(pair, row, z);
+            let grid = PairGrid::new(pair, placed, cell, approach.offset, reach, &self.face, &removed);
             if !grid.rows.is_empty() {
                 pairs.push(grid);
             }
         }
-        ContactGrid { pairs, cell: request.cell, face: self.face.clone() }
-    }
-
-    /// Closing rotation at first touch without load (rad).
-    fn no_load_rotation(&self, request: &PositionRequest<'_>) -> Option<f64> {
-        let mut rotation = 0.0;
-        for _ in 0..4 {
-            let mut least: Option<f64> = None;
-            for pair in self.pairing.candidates(request.mesh_cycle) {
-                let placed = self.pairing.place(pair, request.mesh_cycle, rotation);
-                let removed = |row: &OpposedPoints, z: f64| self.pairing.material_removed(pair, row, z);
-                let search = (self.pairing.shortest_flank() / 64.0).max(request.cell);
-                let Some((_, gap)) = self.pairing.nearest(&placed, &removed, search, 24) else {
-                    continue;
-                };
-                let step = gap / self.pairing.base_radius(1);
-                least = Some(least.map_or(step, |l: f64| l.min(step)));
-            }
-            let step = least?;
-            rotation += step;
-            if step.abs() * self.pairing.base_radius(1) < 1e-12 {
-                break;
-            }
-        }
-        Some(rotation)
+        ContactGrid { pairs, cell, face: self.face.clone() }
     }
 
     /// Local slope from torques 1 % above and below, same geometry.
@@ -304,22 +277,17 @@ fn from_cells(grid: &ContactGrid, mesh_cycle: f64, forces: &[f64]) -> Vec<(i32, 
     cells
 }
 
-fn to_cells(grid: &ContactGrid, mesh_cycle: f64, cells: &[(i32, i32, usize)]) -> Vec<bool> {
+/// The start's active cells on a grid whose cells may have another size.
+fn to_cells(grid: &ContactGrid, mesh_cycle: f64, start: &Start) -> Vec<bool> {
     let columns = grid.face.centres.len();
     let own = mesh_cycle.floor() as i32;
-    let mut active = vec![false; grid.size()];
-    let mut start = 0;
-    for pair in &grid.pairs {
-        for &(number, row, column) in cells.iter().filter(|cell| cell.0 == pair.pair - own) {
-            let _ = number;
-            let row = row - pair.first_row;
-            if row >= 0 && (row as usize) < pair.rows.len() && column < columns {
-                active[start + row as usize * columns + column] = true;
-            }
-        }
-        start += pair.rows.len() * columns;
-    }
-    active
+    let ratio = grid.cell / start.cell;
+    let was_active = |pair: &PairGrid, row: usize, column: usize| {
+        let row = f64::from(pair.first_row + row as i32) * ratio;
+        start.active.binary_search(&(pair.pair - own, row.round() as i32, column)).is_ok()
+    };
+    let rows = grid.pairs.iter().flat_map(|pair| (0..pair.rows.len()).map(move |row| (pair, row)));
+    rows.flat_map(|(pair, row)| (0..columns).map(move |column| was_active(pair, row, column))).collect()
 }
 
 /// Whether load reaches the first or last row of a pair that could have more rows.

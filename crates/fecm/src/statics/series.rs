@@ -8,7 +8,6 @@ use super::model::PairModel;
 use super::position::{PositionRequest, Start};
 use super::result::PositionResult;
 use crate::error::FecmError;
-use crate::nearfield::NearField;
 
 /// Watches a computation; called from any thread.
 pub trait Observer: Sync {
@@ -64,30 +63,21 @@ impl PairModel {
             return Err(FecmError::Option { name: "mesh cycle", value, allowed: "-1e6 to 1e6" });
         }
         let started = Instant::now();
-        let rows = self.expected_rows();
-        let mut cells: Vec<f64> = request.torques.iter().map(|&torque| self.cell_size(torque)).collect();
-        let of_torque = cells.clone();
-        cells.sort_by(f64::total_cmp);
-        cells.dedup();
-        let near: Vec<NearField> = cells.par_iter().map(|&cell| self.near_field(cell, rows)).collect();
-        let near_of = |cell: f64| &near[cells.partition_point(|&c| c < cell).min(near.len() - 1)];
         let total = request.mesh_cycles.len() * request.torques.len();
         let done = std::sync::atomic::AtomicUsize::new(0);
         let solve_chunk = |positions: &[f64]| -> Result<Vec<Vec<PositionResult>>, FecmError> {
             let mut chunk = vec![Vec::new(); request.torques.len()];
             let mut starts: Vec<Option<Start>> = vec![None; request.torques.len()];
             for &mesh_cycle in positions {
+                let touch = self.pairing.first_touch(mesh_cycle);
                 for (index, &torque) in request.torques.iter().enumerate() {
                     if observer.is_cancelled() {
                         return Ok(chunk);
                     }
-                    let cell = of_torque[index];
                     let position = PositionRequest {
                         mesh_cycle,
+                        touch: touch.as_ref(),
                         torque,
-                        cell,
-                        near: near_of(cell),
-                        rows,
                         stiffness_difference: request.stiffness_difference,
                         keep_pressure: request.keep_pressure,
                     };
@@ -109,10 +99,5 @@ impl PairModel {
             }
         }
         Ok(StaticsSeries { results, time: started.elapsed() })
-    }
-
-    /// Rows for which near fields are made ahead.
-    fn expected_rows(&self) -> usize {
-        (4.0 * self.options.contact.cells_per_half_width).ceil() as usize + 8
     }
 }
