@@ -293,6 +293,13 @@ impl GearBody {
         Ok(Station { load, depth })
     }
 
+    /// Position and outward normal of the meshed flank at a roll distance (m), in the tooth's frame.
+    #[must_use]
+    pub fn flank_point(&self, roll_distance: f64) -> (Point2<f64>, Vector2<f64>) {
+        let (_, _, position, normal) = self.locate_on_flank(roll_distance * roll_distance / (2.0 * self.base_radius));
+        (position, normal)
+    }
+
     /// Adds the inward normal load of a station, given in the functions along the face of a family (N), to the interior loads of its sector.
     pub fn add_load(&self, family: usize, station: &Station, modal: &[f64], loads: &mut Mat<f64>) {
         let family = &self.families[family];
