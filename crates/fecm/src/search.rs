@@ -214,8 +214,8 @@ impl PlacedPair {
             let (distance, roll) = master.profile.separation(self.slave_point(along).position)?;
             Some((self.arc_from_foot(roll) - offset, distance))
         };
-        // on external pairs the slave's root lies where the master's tip is
-        let slope = -master.profile.sigma * slave.profile.sigma;
+        // toward the slave's tip is toward the master's root: inward on an external master, outward on a ring
+        let slope = -master.profile.sigma;
         let mut along = (self.foot_along + slope * offset).min(end);
         let (mut miss, mut distance) = at(along).ok_or(NoCell::Fillet)?;
         let mut rate = slope;

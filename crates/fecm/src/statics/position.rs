@@ -40,6 +40,8 @@ pub(super) struct PositionRequest<'a> {
 /// `(0.02 delta)^2 / 2 R`, some 1e-5 of `delta`.
 const ROTATION_TOLERANCE: f64 = 0.02;
 const MOST_UPDATES: usize = 24;
+/// Deflection at which a position counts as overloaded, in base pitches.
+const MOST_DEFLECTION: f64 = 0.25;
 /// Growth of cells that turn out too small: half an octave, so that positions share near fields.
 const CELL_STEP: f64 = std::f64::consts::SQRT_2;
 /// Relative change of torque for the local slope by differences.
@@ -60,10 +62,12 @@ impl PairModel {
         let cells = self.options.contact.cells_per_half_width;
         let mut reach = start.map_or((1.35 * cells).ceil() as i32 + 1, |s| s.reach);
         let mut cell = start.map_or_else(|| self.cell_size(request.torque), |s| s.cell);
+        let most = no_load + MOST_DEFLECTION * self.pairing.pair().base_pitch() / base_radius;
         let mut rotation = match start {
             Some(start) => start.rotation.max(no_load),
             None => no_load + self.deflection_guess(request.torque) / base_radius,
         };
+        rotation = rotation.min(most);
         let mut warm = start.cloned();
         let mut stats = PositionStats::default();
         let mut outcome: Option<(ContactGrid, Mat<f64>, ContactSolution)> = None;
@@ -97,6 +101,10 @@ impl PairModel {
             let fillet = touches_fillet(&grid, &solution.forces);
             outcome = Some((grid, compliance, solution));
             if !converged {
+                break;
+            }
+            if rotation > most {
+                status = PositionStatus::Overloaded;
                 break;
             }
             if crowded && cell < 0.75 * self.widest_cell() {

@@ -59,8 +59,35 @@ pub enum PositionStatus {
     FilletContact,
     /// The iteration stopped early; the residuals say how far it got.
     NotConverged,
+    /// The load would push the teeth a quarter of a base pitch into each other, far beyond what small-strain elasticity and the
+    /// geometry of the flanks can mean; numbers are those of the step where this was noticed.
+    Overloaded,
     /// Nothing can touch at this position.
     NoContact,
+}
+
+impl PositionStatus {
+    /// All states.
+    pub const ALL: [Self; 5] =
+        [Self::Converged, Self::FilletContact, Self::NotConverged, Self::Overloaded, Self::NoContact];
+
+    /// Name for tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::FilletContact => "fillet-contact",
+            Self::NotConverged => "not-converged",
+            Self::Overloaded => "overloaded",
+            Self::NoContact => "no-contact",
+        }
+    }
+
+    /// Whether the position's numbers are a solution.
+    #[must_use]
+    pub fn is_usable(self) -> bool {
+        matches!(self, Self::Converged | Self::FilletContact)
+    }
 }
 
 /// One position of the mesh cycle.

@@ -126,9 +126,12 @@ pub fn expected(schema: &Json) -> String {
 }
 
 fn unknown<'a>(key: &str, known: impl Iterator<Item = &'a String> + Clone) -> String {
-    let stem = |k: &str| k.rsplit_once('_').map_or(k.to_owned(), |(stem, _)| stem.to_owned());
-    // the same quantity in another unit
-    let other_unit = known.clone().find(|k| k.as_str() != key && (stem(k) == stem(key) || stem(k) == key));
+    const UNITS: [&str; 18] =
+        ["_mm", "_um", "_m", "_in", "_inch", "_deg", "_rad", "_n_m", "_nm", "_lb_in", "_gpa", "_mpa", "_pa", "_s", "_ms", "_hz", "_rpm", "_kg"];
+    let stem = |k: &'a str| UNITS.iter().filter_map(|unit| k.strip_suffix(unit)).min_by_key(|stem| stem.len());
+    // the same quantity in another unit, or without one
+    let quantity = UNITS.iter().filter_map(|unit| key.strip_suffix(unit)).min_by_key(|stem| stem.len()).unwrap_or(key);
+    let other_unit = known.clone().find(|k| stem(k) == Some(quantity));
     if let Some(other) = other_unit {
         return format!("unknown key; the key is \"{other}\" (its name carries the unit)");
     }

@@ -93,8 +93,8 @@ fn run_case(file: &Path, out: Option<&Path>, threads: Option<usize>) -> anyhow::
     let finished = pool.install(|| run::spur_pair(&loaded, &target, &observer));
     observer.finish();
     let finished = finished?;
-    if !finished.converged {
-        eprintln!("warning: some positions did not converge; see the status column of series.csv");
+    if finished.unusable > 0 {
+        eprintln!("warning: {} positions have no usable answer; the status columns of the tables say why", finished.unusable);
     }
     Ok(format!("{}  results in {}\n", finished.screen, finished.folder.display()))
 }

@@ -1,5 +1,7 @@
 //! `summary.json` and the one-screen summary: what was asked, what came out, what it cost.
 
+use std::collections::BTreeMap;
+
 use fecm::statics::{ModelStats, PositionResult, PositionStatus, StaticsSeries};
 use gear_geom::{GearPair, Landmark, Landmarks, Member};
 use serde::Serialize;
@@ -67,10 +69,8 @@ pub struct LandmarkRow {
 pub struct Results {
     /// Positions solved.
     pub positions: usize,
-    /// Positions by status.
-    pub not_converged: usize,
-    /// Positions with contact at a fillet.
-    pub fillet_contact: usize,
+    /// Positions by status; extrema are over those with status converged or fillet-contact.
+    pub status: BTreeMap<&'static str, usize>,
     /// Mean number of loaded pairs.
     pub contact_ratio_under_load: f64,
     /// Transmission error (um).
@@ -152,20 +152,28 @@ impl Range {
     }
 }
 
+/// How many positions ended in which status.
+pub fn count_status<'a>(positions: impl Iterator<Item = &'a PositionResult>) -> BTreeMap<&'static str, usize> {
+    let mut count = BTreeMap::new();
+    for position in positions {
+        *count.entry(position.status.name()).or_default() += 1;
+    }
+    count
+}
+
 /// Extrema of a series; `origin` is added to mesh cycles.
 #[must_use]
-pub fn results(series: &[PositionResult], origin: f64) -> Results {
+pub fn results(all: &[PositionResult], origin: f64) -> Results {
+    let series: Vec<&PositionResult> = all.iter().filter(|r| r.status.is_usable()).collect();
     let over = |value: &dyn Fn(&PositionResult) -> Option<f64>, scale: f64| {
         Range::of(series.iter().map(|r| (r.mesh_cycle + origin, value(r))), scale)
     };
-    let count = |status| series.iter().filter(|r| r.status == status).count();
-    let most = |value: &dyn Fn(&PositionResult) -> f64| series.iter().map(value).fold(0.0, f64::max);
+    let most = |value: &dyn Fn(&PositionResult) -> f64| series.iter().copied().map(value).fold(0.0, f64::max);
     let loaded: usize = series.iter().map(|r| r.loaded_pairs().count()).sum();
     let ste = over(&|r| Some(r.static_transmission_error), 1e6);
     Results {
-        positions: series.len(),
-        not_converged: count(PositionStatus::NotConverged) + count(PositionStatus::NoContact),
-        fillet_contact: count(PositionStatus::FilletContact),
+        positions: all.len(),
+        status: count_status(all.iter()),
         contact_ratio_under_load: loaded as f64 / series.len().max(1) as f64,
         ste_um: ste,
         ste_peak_to_peak_um: ste.max - ste.min,
@@ -277,11 +285,8 @@ pub fn screen(case: &SpurPairCase, results: &Results, stats: &ModelStats, times:
         "residuals: torque, contact",
         format!("{:.1e}, {:.1e}", results.largest_torque_residual, results.largest_kkt_violation),
     );
-    if results.not_converged > 0 {
-        line(&mut text, "NOT CONVERGED", format!("{} of {} positions", results.not_converged, results.positions));
-    }
-    if results.fillet_contact > 0 {
-        line(&mut text, "contact reaches a fillet", format!("{} of {} positions", results.fillet_contact, results.positions));
+    for (status, count) in results.status.iter().filter(|(status, _)| **status != PositionStatus::Converged.name()) {
+        line(&mut text, "not plainly converged", format!("{count} of {} positions: {status}", results.positions));
     }
     line(
         &mut text,

@@ -3,18 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use fecm::statics::{PositionResult, PositionStatus};
-
-/// Status as written in tables.
-#[must_use]
-pub fn status_name(status: PositionStatus) -> &'static str {
-    match status {
-        PositionStatus::Converged => "converged",
-        PositionStatus::FilletContact => "fillet-contact",
-        PositionStatus::NotConverged => "not-converged",
-        PositionStatus::NoContact => "no-contact",
-    }
-}
+use fecm::statics::PositionResult;
 
 fn number(value: f64) -> String {
     format!("{value:.9e}")
@@ -78,7 +67,7 @@ pub fn series(path: &Path, results: &[PositionResult], origin: f64) -> Result<()
             }
         }
         row.extend([
-            status_name(result.status).to_owned(),
+            result.status.name().to_owned(),
             number(result.stats.torque_residual),
             number(result.stats.solver.kkt_violation),
             result.stats.cells.to_string(),
@@ -117,7 +106,7 @@ pub fn force_deflection(path: &Path, results: &[Vec<PositionResult>], origin: f6
             optional(result.stiffness_average_slope, 1e-6),
             optional(result.stiffness_local_slope, 1e-6),
             result.loaded_pairs().count().to_string(),
-            status_name(result.status).to_owned(),
+            result.status.name().to_owned(),
         ])?;
     }
     table.flush()?;

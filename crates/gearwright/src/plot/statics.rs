@@ -29,7 +29,7 @@ pub fn transmission_error(title: &str, series: &[PositionResult], origin: f64) -
     Chart {
         title: title.into(),
         x_label: CYCLE.into(),
-        y_label: "Transmission error (um)".into(),
+        y_label: "Transmission error (µm)".into(),
         lines,
         from_zero: false,
         logarithmic: false,
@@ -45,12 +45,12 @@ pub fn mesh_stiffness(title: &str, series: &[PositionResult], origin: f64) -> Ch
     ];
     let differences = over_cycle(series, origin, |r| r.stiffness_local_slope_difference.map(|k| k * 1e-6));
     if !differences.is_empty() {
-        lines.push(line("local, +-1 % torque", 2, Pattern::Dotted, differences));
+        lines.push(line("local, ±1 % torque", 2, Pattern::Dotted, differences));
     }
     Chart {
         title: title.into(),
         x_label: CYCLE.into(),
-        y_label: "Mesh stiffness (N/um)".into(),
+        y_label: "Mesh stiffness (N/µm)".into(),
         lines,
         from_zero: false,
         logarithmic: false,
@@ -98,7 +98,7 @@ pub fn torque_curves(title: &str, map: &[Vec<PositionResult>], origin: f64) -> C
     Chart {
         title: title.into(),
         x_label: CYCLE.into(),
-        y_label: "Transmission error (um)".into(),
+        y_label: "Transmission error (µm)".into(),
         lines: lines.collect(),
         from_zero: true,
         logarithmic: false,
@@ -117,7 +117,7 @@ pub fn force_deflection(title: &str, map: &[Vec<PositionResult>], origin: f64) -
     });
     Chart {
         title: title.into(),
-        x_label: "Transmission error (um)".into(),
+        x_label: "Transmission error (µm)".into(),
         y_label: "Mesh force (kN)".into(),
         lines: lines.collect(),
         from_zero: true,

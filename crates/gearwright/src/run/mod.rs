@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, anyhow};
-use fecm::statics::{Observer, PairModel, PositionResult, PositionStatus, StaticsRequest, StaticsSeries};
+use fecm::statics::{Observer, PairModel, PositionResult, StaticsRequest, StaticsSeries};
 
 use crate::case::SpurPairCase;
 use crate::output::folder::ResultsFolder;
@@ -26,8 +26,8 @@ pub struct Finished {
     pub folder: PathBuf,
     /// The one-screen summary.
     pub screen: String,
-    /// Whether every position converged.
-    pub converged: bool,
+    /// Positions without a usable answer, of the series and the map together.
+    pub unusable: usize,
 }
 
 /// Runs a spur-pair case into `target`.
@@ -91,10 +91,8 @@ pub fn spur_pair(case: &SpurPairCase, target: &Path, observer: &dyn RunObserver)
     };
     std::fs::write(folder.file("summary.json"), serde_json::to_string_pretty(&whole)?)?;
     let screen = summary::screen(case, &results, &stats, &times);
-    let converged = all.iter().flat_map(|s| s.results.iter().flatten()).all(|r| {
-        matches!(r.status, PositionStatus::Converged | PositionStatus::FilletContact)
-    });
-    Ok(Finished { folder: folder.publish()?, screen, converged })
+    let unusable = all.iter().flat_map(|s| s.results.iter().flatten()).filter(|r| !r.status.is_usable()).count();
+    Ok(Finished { folder: folder.publish()?, screen, unusable })
 }
 
 /// Passes on what the solver reports.
@@ -166,13 +164,12 @@ fn draw(
     save(figures::per_pair(title, "Force on the tooth pair (N)", series, origin, |p| p.force), "tooth_forces")?;
     save(figures::per_pair(title, "Share of the load", series, origin, |p| p.share), "load_sharing")?;
     save(
-        figures::per_pair(title, "Tooth-pair stiffness (N/um)", series, origin, |p| p.stiffness * 1e-6),
+        figures::per_pair(title, "Tooth-pair stiffness (N/µm)", series, origin, |p| p.stiffness * 1e-6),
         "tooth_pair_stiffness",
     )?;
     save(figures::per_pair(title, "Peak pressure (MPa)", series, origin, |p| p.peak_pressure * 1e-6), "peak_pressure")?;
     save(figures::per_pair(title, "Contact width (mm)", series, origin, |p| p.contact_width * 1e3), "contact_width")?;
-    let heading = format!("{title}: largest pressure on the pinion flank");
-    if let Some(map) = figures::flank_pressure(&heading, series, &case.pair, mirrored) {
+    if let Some(map) = figures::flank_pressure("Largest pressure on the pinion flank", series, &case.pair, mirrored) {
         map.save(&file, "flank_pressure").map_err(|e| anyhow!("plot flank_pressure: {e}"))?;
     }
     if let Some(map) = map {
