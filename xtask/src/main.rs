@@ -1,2 +1,40 @@
-//! Development and study commands of the workspace (`cargo xtask help`).
-fn main() {}
+//! Development and study commands of the workspace: `cargo xtask help`.
+
+use clap::{Parser, Subcommand};
+
+mod calculix;
+mod ci;
+mod work_precision;
+
+#[derive(Parser)]
+#[command(name = "cargo xtask", about = "Development and study commands")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Format, lints, docs, tests and the README's main command; what CI runs.
+    Ci {
+        /// The slow tests as well.
+        #[arg(long)]
+        full: bool,
+    },
+    /// Static transmission error against CalculiX (program `ccx`, Debian package calculix-ccx); writes docs/reports/calculix.md.
+    PeerCalculix,
+    /// Error against run time; writes docs/reports/work-precision-<study>.md and plots.
+    WorkPrecision {
+        /// What to study.
+        #[arg(value_enum)]
+        study: work_precision::Study,
+    },
+}
+
+fn main() -> anyhow::Result<()> {
+    match Arguments::parse().command {
+        Command::Ci { full } => ci::run(full),
+        Command::PeerCalculix => calculix::run(),
+        Command::WorkPrecision { study } => work_precision::run(study),
+    }
+}

@@ -1,0 +1,220 @@
+//! A whole gear as quadratic triangles: constrained Delaunay refinement of its outline, graded toward the contact.
+
+use std::collections::HashMap;
+
+use anyhow::{Context, ensure};
+use gear_geom::{Gear, GearPair, HalfToothOutline, Member, OutlineSegment};
+use nalgebra::{Point2, Rotation2};
+use spade::{AngleLimit, ConstrainedDelaunayTriangulation, RefinementParameters, Triangulation};
+
+/// Six-node triangles: corners counter-clockwise, then the middles of edges 1-2, 2-3, 3-1.
+pub struct TriangleMesh {
+    /// Nodes in space (m).
+    pub nodes: Vec<Point2<f64>>,
+    /// Elements.
+    pub elements: Vec<[usize; 6]>,
+    /// Element and edge (1 to 3) of the working flanks that may touch.
+    pub contact_faces: Vec<(usize, usize)>,
+    /// Nodes on the bore.
+    pub bore: Vec<usize>,
+}
+
+/// Where a boundary edge lies.
+#[derive(Clone, Copy)]
+enum Place {
+    /// A piece of a tooth's outline: tooth, upper half, segment, parameters of the two ends.
+    Tooth { tooth: i32, upper: bool, segment: OutlineSegment, ends: [f64; 2] },
+    Bore { angles: [f64; 2] },
+}
+
+/// Largest elements: on the outline of the teeth and on the bore, in modules.
+const COARSEST: f64 = 0.3;
+/// Largest elements on fillets, in modules; on tip rounds it is their radius.
+const FILLET: f64 = 0.08;
+/// Edges that bulge by more than this fraction of their length stay straight: their elements would fold.
+const MOST_BULGE: f64 = 0.06;
+/// Growth of boundary elements with the distance from the contact.
+const GROWTH: f64 = 0.2;
+
+struct Outline<'a> {
+    gear: &'a Gear,
+    half: HalfToothOutline,
+    pitch: f64,
+}
+
+impl Outline<'_> {
+    fn point(&self, place: Place, t: f64) -> Point2<f64> {
+        let mix = |ends: [f64; 2]| ends[0] + t * (ends[1] - ends[0]);
+        match place {
+            Place::Tooth { tooth, upper, segment, ends } => {
+                let own = self.half.point(segment, mix(ends));
+                let own = if upper { own } else { Point2::new(own.x, -own.y) };
+                Rotation2::new(self.pitch * f64::from(tooth)) * own
+            }
+            Place::Bore { angles } => {
+                let angle = mix(angles);
+                Point2::new(angle.cos(), angle.sin()) * self.gear.rim_radius()
+            }
+        }
+    }
+
+    /// Splits a boundary piece so that edges have about the size wanted where they are.
+    fn split(&self, whole: Place, size: &impl Fn(Point2<f64>) -> f64) -> Vec<Place> {
+        const FINE: usize = 2000;
+        let points: Vec<Point2<f64>> = (0..=FINE).map(|k| self.point(whole, k as f64 / FINE as f64)).collect();
+        // measure in wanted edges
+        let mut measure = vec![0.0];
+        for pair in points.windows(2) {
+            let last = measure[measure.len() - 1];
+            measure.push(last + (pair[1] - pair[0]).norm() / size(pair[0]));
+        }
+        let total = measure[FINE];
+        if total < 1e-9 {
+            return Vec::new();
+        }
+        let count = total.ceil() as usize;
+        let at = |wanted: f64| {
+            let k = measure.partition_point(|&m| m < wanted).clamp(1, FINE);
+            let share = (wanted - measure[k - 1]) / (measure[k] - measure[k - 1]).max(1e-300);
+            ((k - 1) as f64 + share) / FINE as f64
+        };
+        let cuts: Vec<f64> = (0..=count)
+            .map(|k| if k == 0 { 0.0 } else if k == count { 1.0 } else { at(total * k as f64 / count as f64) })
+            .collect();
+        cuts.windows(2)
+            .map(|cut| {
+                let inner = |ends: [f64; 2]| [ends[0] + cut[0] * (ends[1] - ends[0]), ends[0] + cut[1] * (ends[1] - ends[0])];
+                match whole {
+                    Place::Tooth { tooth, upper, segment, ends } => Place::Tooth { tooth, upper, segment, ends: inner(ends) },
+                    Place::Bore { angles } => Place::Bore { angles: inner(angles) },
+                }
+            })
+            .collect()
+    }
+}
+
+/// Meshes one gear of a pair as it stands at a mesh cycle, contact elements of about `finest` (m).
+pub fn whole_gear(pair: &GearPair, member: Member, pairs: &[i32], mesh_cycle: f64, finest: f64) -> anyhow::Result<TriangleMesh> {
+    let gear = pair.gear(member);
+    let outline = Outline { gear, half: gear.half_tooth_outline(), pitch: std::f64::consts::TAU / f64::from(gear.teeth()) };
+    let upper_works = pair.working_side(member).sign() > 0.0;
+    let step = pair.tooth_step(member);
+    let tip = gear.roll_distance(gear.tip_form_radius());
+    let form = gear.roll_distance(gear.form_radius());
+    let contacts: Vec<Point2<f64>> = pairs
+        .iter()
+        .map(|&k| {
+            let roll = pair.contact_roll(member, k, mesh_cycle).clamp(form, tip);
+            Rotation2::new(outline.pitch * f64::from(k * step)) * gear.flank_point(pair.working_side(member), roll)
+        })
+        .collect();
+    // teeth from -z/2 on, so that the numbers of pairs are tooth numbers
+    let teeth = gear.teeth() as i32;
+    let first = -teeth / 2;
+    let size = |point: Point2<f64>| {
+        let distance = contacts.iter().map(|c| (c - point).norm()).fold(f64::INFINITY, f64::min);
+        // uniform over three sizes around the contact, growing beyond
+        (finest + GROWTH * (distance - 6.0 * finest).max(0.0)).min(COARSEST * gear.module())
+    };
+    let mut boundary: Vec<Place> = Vec::new();
+    for tooth in first..first + teeth {
+        for upper in [false, true] {
+            let segments: Vec<OutlineSegment> =
+                if upper { OutlineSegment::ALL.iter().rev().copied().collect() } else { OutlineSegment::ALL.to_vec() };
+            for segment in segments {
+                let ends = if upper { [1.0, 0.0] } else { [0.0, 1.0] };
+                let most = match segment {
+                    OutlineSegment::Fillet => FILLET * gear.module(),
+                    OutlineSegment::TipRound => gear.tip_round(),
+                    _ => f64::INFINITY,
+                };
+                boundary.extend(outline.split(Place::Tooth { tooth, upper, segment, ends }, &|p| size(p).min(most)));
+            }
+        }
+    }
+    let bore_start = boundary.len();
+    boundary.extend(outline.split(Place::Bore { angles: [0.0, std::f64::consts::TAU] }, &size));
+    triangulate(&outline, &boundary, bore_start, |place| match place {
+        Place::Tooth { tooth, upper, segment, .. } => {
+            upper == upper_works
+                && matches!(segment, OutlineSegment::Flank | OutlineSegment::TipRound)
+                && pairs.iter().any(|&k| (k * step - tooth).rem_euclid(teeth) == 0)
+        }
+        Place::Bore { .. } => false,
+    })
+    .map(|mut mesh| {
+        let turn = Rotation2::new(pair.tooth_angle(member, 0, mesh_cycle));
+        let centre = pair.centre(member);
+        for node in &mut mesh.nodes {
+            *node = centre + turn * node.coords;
+        }
+        mesh
+    })
+}
+
+fn triangulate(
+    outline: &Outline<'_>,
+    boundary: &[Place],
+    bore_start: usize,
+    touches: impl Fn(Place) -> bool,
+) -> anyhow::Result<TriangleMesh> {
+    let mut triangulation = ConstrainedDelaunayTriangulation::<spade::Point2<f64>>::new();
+    let starts: Vec<Point2<f64>> = boundary.iter().map(|&place| outline.point(place, 0.0)).collect();
+    let handles = starts
+        .iter()
+        .map(|p| triangulation.insert(spade::Point2::new(p.x, p.y)))
+        .collect::<Result<Vec<_>, _>>()
+        .context("outline point")?;
+    // loops: outline, bore
+    let next = |k: usize| match k + 1 {
+        n if n == bore_start => 0,
+        n if n == boundary.len() => bore_start,
+        n => n,
+    };
+    let mut place_of = HashMap::new();
+    for k in 0..boundary.len() {
+        ensure!(triangulation.can_add_constraint(handles[k], handles[next(k)]), "the outline crosses itself");
+        triangulation.add_constraint(handles[k], handles[next(k)]);
+        place_of.insert((handles[k].index(), handles[next(k)].index()), boundary[k]);
+    }
+    let parameters = RefinementParameters::<f64>::new()
+        .exclude_outer_faces(true)
+        .keep_constraint_edges()
+        .with_angle_limit(AngleLimit::from_deg(26.0))
+        .with_max_additional_vertices(400_000);
+    let outcome = triangulation.refine(parameters);
+    let excluded: std::collections::HashSet<_> = outcome.excluded_faces.into_iter().collect();
+    let mut mesh = TriangleMesh {
+        nodes: triangulation.vertices().map(|v| Point2::new(v.position().x, v.position().y)).collect(),
+        elements: Vec::new(),
+        contact_faces: Vec::new(),
+        bore: Vec::new(),
+    };
+    let mut middles: HashMap<(usize, usize), usize> = HashMap::new();
+    for face in triangulation.inner_faces().filter(|face| !excluded.contains(&face.fix())) {
+        let corners = face.vertices().map(|v| v.fix().index());
+        let mut element = [corners[0], corners[1], corners[2], 0, 0, 0];
+        for edge in 0..3 {
+            let (a, b) = (corners[edge], corners[(edge + 1) % 3]);
+            let place = place_of.get(&(a, b)).or_else(|| place_of.get(&(b, a))).copied();
+            let middle = *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                let straight = nalgebra::center(&mesh.nodes[a], &mesh.nodes[b]);
+                let most = MOST_BULGE * (mesh.nodes[b] - mesh.nodes[a]).norm();
+                let curved = place.map(|place| outline.point(place, 0.5)).filter(|p| (p - straight).norm() < most);
+                mesh.nodes.push(curved.unwrap_or(straight));
+                mesh.nodes.len() - 1
+            });
+            element[3 + edge] = middle;
+            match place {
+                Some(Place::Bore { .. }) => mesh.bore.extend([a, b, middle]),
+                Some(place) if touches(place) => mesh.contact_faces.push((mesh.elements.len(), edge + 1)),
+                _ => {}
+            }
+        }
+        mesh.elements.push(element);
+    }
+    mesh.bore.sort_unstable();
+    mesh.bore.dedup();
+    ensure!(!mesh.contact_faces.is_empty() && !mesh.bore.is_empty(), "the mesh has no contact faces or no bore");
+    Ok(mesh)
+}

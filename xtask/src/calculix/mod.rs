@@ -1,0 +1,132 @@
+//! Peer: the same gear pairs in a conventional finite-element contact program.
+//!
+//! CalculiX (`ccx`) gets whole gears in plane strain, an unstructured mesh of quadratic triangles graded toward the contact, and face-to-face
+//! contact. Nothing is shared with our solver but the outline of the teeth. The wheel's bore is turned by three rotations around the
+//! answer; the rotation at the case's torque is interpolated from the reaction moments.
+
+mod deck;
+mod mesh;
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use anyhow::Context;
+use fecm::FaceModel;
+use fecm::statics::{PairModel, PositionResult, StaticsRequest};
+use gear_geom::Member;
+use gearwright::case::{self, SpurPairCase};
+
+/// Cases and mesh cycles (pair 0 at its pitch point at 0).
+const SCENES: [(&str, &[f64]); 2] = [("nonunity-pair.toml", &[0.0, 0.2, 0.4, 0.6]), ("unity-pair.toml", &[0.0, 0.3, 0.5])];
+
+/// Sizes of contact elements in Hertz half widths: the last is compared, the others show convergence.
+const LADDER: [f64; 3] = [1.0, 0.5, 0.25];
+
+/// One position in one program.
+#[derive(Debug, Clone, Copy)]
+struct Answer {
+    /// Static transmission error (m).
+    transmission_error: f64,
+    /// Unknowns.
+    unknowns: usize,
+    /// Wall time.
+    time: Duration,
+}
+
+/// Runs all scenes and writes the report.
+pub fn run() -> anyhow::Result<()> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut report = String::from(
+        "# Static transmission error against CalculiX\n\n\
+         Written by `cargo xtask peer-calculix`. Plane strain, rigid hubs, no friction. CalculiX: whole gears, quadratic triangles graded\n\
+         toward the contact, face-to-face contact (`h` is the contact element in Hertz half widths); its time is one run of three\n\
+         rotations. gearwright: default numerics; its time is meshing, condensation and one position.\n\n\
+         | pair | mesh cycle | CalculiX h = 1 (um) | h = 1/2 (um) | h = 1/4 (um) | unknowns | time (s) | gearwright (um) | unknowns | time (s) | difference |\n\
+         |---|---|---|---|---|---|---|---|---|---|---|\n",
+    );
+    let mut worst = 0.0_f64;
+    for (name, mesh_cycles) in SCENES {
+        let case = case::load(&root.join("configs").join(name))?;
+        for &mesh_cycle in mesh_cycles {
+            let (ours, position) = gearwright_answer(&case, mesh_cycle)?;
+            let peers = LADDER
+                .iter()
+                .map(|&size| calculix_answer(&case, &position, size))
+                .collect::<anyhow::Result<Vec<_>>>()
+                .with_context(|| format!("{name} at mesh cycle {mesh_cycle}"))?;
+            let finest = peers[LADDER.len() - 1];
+            let difference = ours.transmission_error / finest.transmission_error - 1.0;
+            worst = worst.max(difference.abs());
+            writeln!(
+                report,
+                "| {} | {mesh_cycle} | {:.3} | {:.3} | {:.3} | {} | {:.1} | {:.3} | {} | {:.2} | {:+.2} % |",
+                name.trim_end_matches(".toml"),
+                peers[0].transmission_error * 1e6,
+                peers[1].transmission_error * 1e6,
+                finest.transmission_error * 1e6,
+                finest.unknowns,
+                finest.time.as_secs_f64(),
+                ours.transmission_error * 1e6,
+                ours.unknowns,
+                ours.time.as_secs_f64(),
+                100.0 * difference,
+            )?;
+            println!("{}", report.lines().last().unwrap_or_default());
+        }
+    }
+    writeln!(report, "\nLargest difference: {:.2} % (aim: 1.5 %).", 100.0 * worst)?;
+    let file = root.join("docs/reports/calculix.md");
+    std::fs::write(&file, report)?;
+    println!("largest difference {:.2} %; written: docs/reports/calculix.md", 100.0 * worst);
+    anyhow::ensure!(worst < 0.015, "the difference exceeds 1.5 %");
+    Ok(())
+}
+
+fn gearwright_answer(case: &SpurPairCase, mesh_cycle: f64) -> anyhow::Result<(Answer, PositionResult)> {
+    let started = Instant::now();
+    let options = fecm::statics::PairModelOptions { face: FaceModel::PlaneStrain, ..case.options };
+    let model = PairModel::new(&case.pair, &options)?;
+    let torques = vec![case.inputs.load.torque_n_m];
+    let request = StaticsRequest { mesh_cycles: vec![mesh_cycle], torques, stiffness_difference: false, keep_pressure: false };
+    let position = model.solve(&request, &())?.results.remove(0).remove(0);
+    let stats = model.stats();
+    let unknowns = stats.pinion.sector_unknowns + stats.wheel.sector_unknowns;
+    Ok((Answer { transmission_error: position.static_transmission_error, unknowns, time: started.elapsed() }, position))
+}
+
+/// The peer's answer with contact elements of `size` Hertz half widths. Our answer only says where to turn the bore: the moment there
+/// is the peer's own.
+fn calculix_answer(case: &SpurPairCase, ours: &PositionResult, size: f64) -> anyhow::Result<Answer> {
+    let pair = &case.pair;
+    let facewidth = pair.pinion().facewidth().min(pair.wheel().facewidth());
+    let material = [case.options.pinion.material, case.options.wheel.material];
+    let inverse_modulus: f64 = material.iter().map(|m| (1.0 - m.poisson_ratio.powi(2)) / m.young_modulus).sum();
+    let line_load = ours.mesh_force / facewidth;
+    let half_width = fecm::pairing::Pairing::new(pair).hertz_half_width(inverse_modulus, line_load);
+    let pairs: Vec<i32> = ours.loaded_pairs().map(|p| p.pair).collect();
+    let meshes = [Member::Pinion, Member::Wheel].map(|member| mesh::whole_gear(pair, member, &pairs, ours.mesh_cycle, size * half_width));
+    let [pinion, wheel] = meshes;
+    let meshes = [pinion?, wheel?];
+    let base_radius = pair.wheel().base_radius();
+    let target = ours.torque;
+    let rotations = [0.97, 1.0, 1.03].map(|share| share * ours.rotation * pair.closing_direction());
+    let started = Instant::now();
+    let moments = deck::run(&deck::Deck {
+        meshes: &meshes,
+        centre: pair.centre(Member::Wheel),
+        materials: material,
+        facewidth,
+        rotations: &rotations,
+    })?;
+    let time = started.elapsed();
+    // rotation at the torque: quadratic through three points
+    let at = |i: usize| (moments[i].abs(), rotations[i].abs());
+    let lagrange = |i: usize, j: usize, k: usize| {
+        let (m, r) = at(i);
+        r * (target - at(j).0) * (target - at(k).0) / ((m - at(j).0) * (m - at(k).0))
+    };
+    let rotation = lagrange(0, 1, 2) + lagrange(1, 0, 2) + lagrange(2, 0, 1);
+    let unknowns = 2 * meshes.iter().map(|m| m.nodes.len()).sum::<usize>();
+    Ok(Answer { transmission_error: rotation * base_radius, unknowns, time })
+}

@@ -1,0 +1,18 @@
+//! Error against run time of the numerics on offer, with the defaults marked.
+
+mod report;
+mod statics;
+
+/// What to study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum Study {
+    /// Transmission error and mesh stiffness of the static contact.
+    Statics,
+}
+
+/// Runs a study and writes its report.
+pub fn run(study: Study) -> anyhow::Result<()> {
+    match study {
+        Study::Statics => statics::run(),
+    }
+}
