@@ -204,6 +204,8 @@ pub(crate) struct Runner<'a, const N: usize> {
     pub options: Options,
     /// Mesh frequency (Hz).
     pub frequency: f64,
+    /// Hold the tangent vectors to the tolerance too (the state alone may be at rest).
+    pub control_tangents: bool,
 }
 
 impl<'a, const N: usize> Runner<'a, N> {
@@ -216,7 +218,7 @@ impl<'a, const N: usize> Runner<'a, N> {
             "Hz",
             "between 1e-6 and 1e9",
         )?;
-        Ok(Self { system, method: options.method_for::<N>()?, options: *options, frequency })
+        Ok(Self { system, method: options.method_for::<N>()?, options: *options, frequency, control_tangents: false })
     }
 
     /// Advances `cursor` by `cycles` mesh cycles and shows every accepted step to `observe`.
@@ -282,7 +284,7 @@ impl<'a, const N: usize> Runner<'a, N> {
                 let StepControl::Adaptive { tolerance } = self.options.step else {
                     break (step, after);
                 };
-                let size = s.norm(&error) / tolerance;
+                let size = s.norm(&error).max(self.tangent_error(cursor, &step)) / tolerance;
                 if size <= 1.0 && after.is_finite() {
                     let grow = if size > 0.0 { 0.9 * size.powf(-1.0 / self.method.estimate_power()) } else { 5.0 };
                     // A step cut short by the end of the segment must not shorten the next.
@@ -344,6 +346,19 @@ impl<'a, const N: usize> Runner<'a, N> {
             observe(&record);
         }
         Ok(())
+    }
+
+    /// Largest error of a tangent vector, in natural units.
+    fn tangent_error(&self, cursor: &Cursor<N>, step: &Step) -> f64 {
+        if !self.control_tangents {
+            return 0.0;
+        }
+        let linear = step.homogeneous();
+        let size = |(j, t): (usize, &Vector<N>)| {
+            let e = linear.apply(self.system, t).1;
+            self.system.norm(&e) * self.system.unit(j)
+        };
+        cursor.tangents.iter().enumerate().map(size).fold(0.0, f64::max)
     }
 
     /// Length of the next trial step (mesh cycles).
