@@ -3,6 +3,7 @@
 //! See the modules.
 
 pub mod analytic;
+mod continuation;
 mod curve;
 mod error;
 mod excitation;
@@ -16,6 +17,7 @@ mod spectrum;
 mod sweep;
 mod system;
 
+pub use continuation::{Branch, BranchEnd, BranchPoint, ContinuationOptions, TurningPoint};
 pub use curve::{Curve, CurveRange, Interpolation};
 pub use error::LpmError;
 pub use excitation::Excitation;
