@@ -18,7 +18,7 @@
 
 use crate::error::{LpmError, check};
 use crate::floquet::{Multiplier, Stability, multipliers, stability};
-use crate::integrate::{Options, Runner};
+use crate::integrate::{Method, Options, Runner};
 use crate::linear;
 use crate::model::{Model, State, with_system};
 use crate::periodic::{ShootingOptions, distance, newton_matrix, period_map};
@@ -65,7 +65,10 @@ impl Default for ContinuationOptions {
             max_points: 5000,
             integration: Options::with_tolerance(1e-9),
             tolerance: 1e-8,
-            sampling: Sampling { per_cycle: 64, energy: false },
+            sampling: Sampling {
+                per_cycle: 64,
+                energy: false,
+            },
         }
     }
 }
@@ -74,11 +77,41 @@ impl ContinuationOptions {
     /// Checks ranges.
     pub fn validate(&self) -> Result<(), LpmError> {
         self.integration.validate()?;
-        check(self.from > 0.0, "least mesh frequency", self.from, "Hz", "positive")?;
-        check(self.to > self.from, "largest mesh frequency", self.to, "Hz", "above the least")?;
-        check((1e-4..=1.0).contains(&self.max_step), "arclength step", self.max_step, "-", "between 1e-4 and 1")?;
-        check(self.max_points >= 2, "points", self.max_points as f64, "-", "at least 2")?;
-        check((1e-12..=1e-3).contains(&self.tolerance), "residual", self.tolerance, "-", "between 1e-12 and 1e-3")?;
+        check(
+            self.from > 0.0,
+            "least mesh frequency",
+            self.from,
+            "Hz",
+            "positive",
+        )?;
+        check(
+            self.to > self.from,
+            "largest mesh frequency",
+            self.to,
+            "Hz",
+            "above the least",
+        )?;
+        check(
+            (1e-4..=1.0).contains(&self.max_step),
+            "arclength step",
+            self.max_step,
+            "-",
+            "between 1e-4 and 1",
+        )?;
+        check(
+            self.max_points >= 2,
+            "points",
+            self.max_points as f64,
+            "-",
+            "at least 2",
+        )?;
+        check(
+            (1e-12..=1e-3).contains(&self.tolerance),
+            "residual",
+            self.tolerance,
+            "-",
+            "between 1e-12 and 1e-3",
+        )?;
         Ok(())
     }
 }
@@ -139,23 +172,57 @@ impl Branch {
     pub fn stability_changes(&self) -> Vec<(usize, Stability)> {
         let turning: Vec<usize> = self.turning_points.iter().map(|t| t.after + 1).collect();
         (1..self.points.len())
-            .filter(|i| self.points[*i].stability != self.points[i - 1].stability && !turning.contains(i))
+            .filter(|i| {
+                self.points[*i].stability != self.points[i - 1].stability && !turning.contains(i)
+            })
             .map(|i| (i, self.points[i].stability))
             .collect()
     }
 
+    /// Points and turning points in order along the curve.
+    pub fn curve(&self) -> Vec<&BranchPoint> {
+        let mut turning = self.turning_points.iter().peekable();
+        let mut all = Vec::with_capacity(self.points.len() + self.turning_points.len());
+        for (i, p) in self.points.iter().enumerate() {
+            all.push(p);
+            while let Some(t) = turning.next_if(|t| t.after == i) {
+                all.push(&t.point);
+            }
+        }
+        all
+    }
+
     /// Solutions at `mesh_frequency` (Hz), interpolated linearly along the curve: (peak to peak in m, stable).
     pub fn at(&self, mesh_frequency: f64) -> Vec<(f64, bool)> {
-        self.points
+        let curve = self.curve();
+        curve
             .windows(2)
             .filter_map(|w| {
-                let (a, b) = (w[0].mesh_frequency - mesh_frequency, w[1].mesh_frequency - mesh_frequency);
+                let (a, b) = (
+                    w[0].mesh_frequency - mesh_frequency,
+                    w[1].mesh_frequency - mesh_frequency,
+                );
                 if a * b > 0.0 || a == b || b == 0.0 {
                     return None;
                 }
                 let t = a / (a - b);
                 let p = w[0].measure.peak_to_peak * (1.0 - t) + w[1].measure.peak_to_peak * t;
-                Some((p, w[if t < 0.5 { 0 } else { 1 }].stability == Stability::Stable))
+                // At a turning point the multiplier is +1 and its sign rounding: the other end of the stretch tells.
+                let margin = |p: &BranchPoint| {
+                    p.multipliers
+                        .iter()
+                        .fold(0.0, |m: f64, x| m.max(x.modulus()))
+                        - 1.0
+                };
+                let (m0, m1) = (margin(w[0]), margin(w[1]));
+                Some((
+                    p,
+                    if m0.abs() > m1.abs() {
+                        m0 < 0.0
+                    } else {
+                        m1 < 0.0
+                    },
+                ))
             })
             .collect()
     }
@@ -209,6 +276,7 @@ struct Tracer<'a, const N: usize> {
     s: &'a System<N>,
     o: &'a ContinuationOptions,
     f_unit: f64,
+    method: Method,
 }
 
 impl<const N: usize> Tracer<'_, N> {
@@ -222,13 +290,18 @@ impl<const N: usize> Tracer<'_, N> {
     }
 
     fn difference(&self, a: &Unknown<N>, b: &Unknown<N>) -> Vec<f64> {
-        let mut d: Vec<f64> = (0..2 * N).map(|i| (a.z.get(i) - b.z.get(i)) / self.s.unit(i)).collect();
+        let mut d: Vec<f64> = (0..2 * N)
+            .map(|i| (a.z.get(i) - b.z.get(i)) / self.s.unit(i))
+            .collect();
         d.push((a.f - b.f) / self.f_unit);
         d
     }
 
     /// Residual and Jacobian rows at `u`.
-    fn linearise(&self, u: &Unknown<N>) -> Result<(Vector<N>, Vec<Vec<f64>>, Vec<Vector<N>>), LpmError> {
+    fn linearise(
+        &self,
+        u: &Unknown<N>,
+    ) -> Result<(Vector<N>, Vec<Vec<f64>>, Vec<Vector<N>>), LpmError> {
         let run = Runner::new(self.s, &self.o.integration, u.f)?;
         let (end, columns) = period_map(&run, u.z, 1, true)?;
         let df = FREQUENCY_STEP * u.f;
@@ -250,18 +323,35 @@ impl<const N: usize> Tracer<'_, N> {
                 return None;
             }
             let (end, jacobian, columns) = self.linearise(&u).ok()?;
-            let residual = distance(self.s, &end, &u.z);
+            let residual = distance(self.s, self.method, &end, &u.z);
             if residual < self.o.tolerance {
-                return Some(Solved { u, jacobian, columns, iterations });
+                return Some(Solved {
+                    u,
+                    jacobian,
+                    columns,
+                    iterations,
+                });
             }
             let mut rows = jacobian;
             rows.push(tangent.to_vec());
-            let mut rhs: Vec<f64> = (0..2 * N).map(|i| (u.z.get(i) - end.get(i)) / self.s.unit(i)).collect();
-            let along: f64 = self.difference(&u, base).iter().zip(tangent).map(|(a, b)| a * b).sum();
+            let mut rhs: Vec<f64> = (0..2 * N)
+                .map(|i| (u.z.get(i) - end.get(i)) / self.s.unit(i))
+                .collect();
+            let along: f64 = self
+                .difference(&u, base)
+                .iter()
+                .zip(tangent)
+                .map(|(a, b)| a * b)
+                .sum();
             rhs.push(ds - along);
             let step = linear::solve(rows, rhs, "continuation").ok()?;
             u = self.add(&u, &step, 1.0);
-            let strayed = self.difference(&u, &predicted).iter().map(|d| d * d).sum::<f64>().sqrt();
+            let strayed = self
+                .difference(&u, &predicted)
+                .iter()
+                .map(|d| d * d)
+                .sum::<f64>()
+                .sqrt();
             if strayed > ds.abs() {
                 return None;
             }
@@ -283,7 +373,8 @@ impl<const N: usize> Tracer<'_, N> {
     fn report(&self, model: &Model, p: &Solved<N>) -> Result<BranchPoint, LpmError> {
         let state = self.s.export(&p.u.z);
         let cycles = self.s.excitation().period();
-        let response = model.simulate(p.u.f, &state, cycles, &self.o.sampling, &self.o.integration)?;
+        let response =
+            model.simulate(p.u.f, &state, cycles, &self.o.sampling, &self.o.integration)?;
         let multipliers = multipliers(self.s, &p.columns)?;
         Ok(BranchPoint {
             mesh_frequency: p.u.f,
@@ -299,7 +390,11 @@ impl<const N: usize> Tracer<'_, N> {
         let ((mut a, mut fa), (mut b, mut fb)) = ((0.0, tangent[2 * N]), (ds, end));
         let mut side = 0i8;
         for i in 0..40 {
-            let x = if i % 8 == 7 { 0.5 * (a + b) } else { (a * fb - b * fa) / (fb - fa) };
+            let x = if i % 8 == 7 {
+                0.5 * (a + b)
+            } else {
+                (a * fb - b * fa) / (fb - fa)
+            };
             let p = self.correct(base, tangent, x)?;
             let fx = self.tangent(&p, tangent)?[2 * N];
             if fx.abs() < 1e-6 || b - a < 1e-9 * ds {
@@ -330,13 +425,26 @@ fn trace<const N: usize>(
     z: Vector<N>,
     o: &ContinuationOptions,
 ) -> Result<Branch, LpmError> {
-    let t = Tracer { s, o, f_unit: s.omega / std::f64::consts::TAU };
+    let method = o.integration.method_for::<N>()?;
+    let t = Tracer {
+        s,
+        o,
+        f_unit: s.omega / std::f64::consts::TAU,
+        method,
+    };
     let u = Unknown { z, f: frequency };
     let (_, jacobian, columns) = t.linearise(&u)?;
-    let mut here = Solved { u, jacobian, columns, iterations: 0 };
+    let mut here = Solved {
+        u,
+        jacobian,
+        columns,
+        iterations: 0,
+    };
     let mut start = vec![0.0; 2 * N + 1];
     start[2 * N] = if o.upwards { 1.0 } else { -1.0 };
-    let mut tangent = t.tangent(&here, &start).ok_or(LpmError::Singular { place: "first tangent of a branch" })?;
+    let mut tangent = t.tangent(&here, &start).ok_or(LpmError::Singular {
+        place: "first tangent of a branch",
+    })?;
     let mut out = Branch {
         points: vec![t.report(model, &here)?],
         turning_points: Vec::new(),
@@ -364,7 +472,11 @@ fn trace<const N: usize>(
         {
             let point = t.report(model, &fold)?;
             let after = out.points.len() - 1;
-            out.turning_points.push(TurningPoint { point, after, is_maximum: tangent[2 * N] > 0.0 });
+            out.turning_points.push(TurningPoint {
+                point,
+                after,
+                is_maximum: tangent[2 * N] > 0.0,
+            });
         }
         let outside = point.u.f < o.from || point.u.f > o.to;
         ds = match point.iterations {

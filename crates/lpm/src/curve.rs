@@ -35,8 +35,14 @@ struct Piece {
 
 #[derive(Debug, Clone, PartialEq)]
 enum Repr {
-    Pieces { pieces: Vec<Piece>, hint: Vec<u32> },
-    Fourier { mean: f64, harmonics: Vec<(f64, f64)> },
+    Pieces {
+        pieces: Vec<Piece>,
+        hint: Vec<u32>,
+    },
+    Fourier {
+        mean: f64,
+        harmonics: Vec<(f64, f64)>,
+    },
 }
 
 /// A periodic function of the mesh phase.
@@ -59,22 +65,47 @@ impl Curve {
     /// The same value everywhere.
     pub fn constant(value: f64) -> Result<Self, LpmError> {
         check(true, "constant value", value, "-", "finite")?;
-        Ok(Self::assemble(1, vec![Piece { start: 0.0, a: [value, 0.0, 0.0, 0.0], kink: false }]))
+        Ok(Self::assemble(
+            1,
+            vec![Piece {
+                start: 0.0,
+                a: [value, 0.0, 0.0, 0.0],
+                kink: false,
+            }],
+        ))
     }
 
     /// Piecewise constant: `steps` holds (phase at which the value begins, value), phases ascending in `[0, period)`.
     pub fn steps(period: usize, steps: &[(f64, f64)]) -> Result<Self, LpmError> {
         let (phases, values): (Vec<f64>, Vec<f64>) = steps.iter().copied().unzip();
         check_table(period, &phases, &values, 1)?;
-        let pieces =
-            steps.iter().map(|&(start, v)| Piece { start, a: [v, 0.0, 0.0, 0.0], kink: true }).collect();
+        let pieces = steps
+            .iter()
+            .map(|&(start, v)| Piece {
+                start,
+                a: [v, 0.0, 0.0, 0.0],
+                kink: true,
+            })
+            .collect();
         Ok(Self::from_pieces(period, pieces))
     }
 
     /// Rectangular wave of one cycle: `high` from phase `rise` for a fraction `duty` of the cycle, `low` elsewhere.
     pub fn rectangular(low: f64, high: f64, rise: f64, duty: f64) -> Result<Self, LpmError> {
-        check((0.0..1.0).contains(&rise), "rise", rise, "cycles", "in [0, 1)")?;
-        check(duty > 0.0 && duty < 1.0, "duty", duty, "-", "between 0 and 1, both excluded")?;
+        check(
+            (0.0..1.0).contains(&rise),
+            "rise",
+            rise,
+            "cycles",
+            "in [0, 1)",
+        )?;
+        check(
+            duty > 0.0 && duty < 1.0,
+            "duty",
+            duty,
+            "-",
+            "between 0 and 1, both excluded",
+        )?;
         let fall = (rise + duty) % 1.0;
         let mut steps = [(rise, high), (fall, low)];
         steps.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -82,17 +113,45 @@ impl Curve {
     }
 
     /// Rectangular wave with ramps: straight lines of length `ramp` (cycles) centred on the two jumps.
-    pub fn trapezoidal(low: f64, high: f64, rise: f64, duty: f64, ramp: f64) -> Result<Self, LpmError> {
-        check((0.0..1.0).contains(&rise), "rise", rise, "cycles", "in [0, 1)")?;
-        check(duty > 0.0 && duty < 1.0, "duty", duty, "-", "between 0 and 1, both excluded")?;
+    pub fn trapezoidal(
+        low: f64,
+        high: f64,
+        rise: f64,
+        duty: f64,
+        ramp: f64,
+    ) -> Result<Self, LpmError> {
+        check(
+            (0.0..1.0).contains(&rise),
+            "rise",
+            rise,
+            "cycles",
+            "in [0, 1)",
+        )?;
+        check(
+            duty > 0.0 && duty < 1.0,
+            "duty",
+            duty,
+            "-",
+            "between 0 and 1, both excluded",
+        )?;
         let room = duty.min(1.0 - duty);
-        check(ramp > 0.0 && ramp < room, "ramp", ramp, "cycles", "above 0, below both plateaus")?;
+        check(
+            ramp > 0.0 && ramp < room,
+            "ramp",
+            ramp,
+            "cycles",
+            "above 0, below both plateaus",
+        )?;
         let r = 0.5 * ramp;
-        let mut pts: Vec<(f64, f64)> =
-            [(rise - r, low), (rise + r, high), (rise + duty - r, high), (rise + duty + r, low)]
-                .iter()
-                .map(|&(t, v)| (t.rem_euclid(1.0), v))
-                .collect();
+        let mut pts: Vec<(f64, f64)> = [
+            (rise - r, low),
+            (rise + r, high),
+            (rise + duty - r, high),
+            (rise + duty + r, low),
+        ]
+        .iter()
+        .map(|&(t, v)| (t.rem_euclid(1.0), v))
+        .collect();
         pts.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (phases, values): (Vec<f64>, Vec<f64>) = pts.into_iter().unzip();
         Self::table(1, &phases, &values, Interpolation::Linear)
@@ -105,25 +164,46 @@ impl Curve {
         values: &[f64],
         interpolation: Interpolation,
     ) -> Result<Self, LpmError> {
-        let least = if interpolation == Interpolation::Spline { 3 } else { 2 };
+        let least = if interpolation == Interpolation::Spline {
+            3
+        } else {
+            2
+        };
         check_table(period, phases, values, least)?;
         let n = phases.len();
         let next = |i: usize| {
-            if i + 1 < n { (phases[i + 1], values[i + 1]) } else { (phases[0] + period as f64, values[0]) }
+            if i + 1 < n {
+                (phases[i + 1], values[i + 1])
+            } else {
+                (phases[0] + period as f64, values[0])
+            }
         };
         let width: Vec<f64> = (0..n).map(|i| next(i).0 - phases[i]).collect();
         let slope: Vec<f64> = (0..n).map(|i| (next(i).1 - values[i]) / width[i]).collect();
         let pieces = match interpolation {
             Interpolation::Linear => (0..n)
-                .map(|i| Piece { start: phases[i], a: [values[i], slope[i], 0.0, 0.0], kink: true })
+                .map(|i| Piece {
+                    start: phases[i],
+                    a: [values[i], slope[i], 0.0, 0.0],
+                    kink: true,
+                })
                 .collect(),
             Interpolation::Spline => {
                 let m = cyclic_spline(&width, &slope)?;
                 (0..n)
                     .map(|i| {
                         let (m0, m1, h) = (m[i], m[(i + 1) % n], width[i]);
-                        let a = [values[i], slope[i] - h * (2.0 * m0 + m1) / 6.0, 0.5 * m0, (m1 - m0) / (6.0 * h)];
-                        Piece { start: phases[i], a, kink: false }
+                        let a = [
+                            values[i],
+                            slope[i] - h * (2.0 * m0 + m1) / 6.0,
+                            0.5 * m0,
+                            (m1 - m0) / (6.0 * h),
+                        ];
+                        Piece {
+                            start: phases[i],
+                            a,
+                            kink: false,
+                        }
                     })
                     .collect()
             }
@@ -132,9 +212,15 @@ impl Curve {
     }
 
     /// Table of equally spaced values, the first at phase 0.
-    pub fn samples(period: usize, values: &[f64], interpolation: Interpolation) -> Result<Self, LpmError> {
+    pub fn samples(
+        period: usize,
+        values: &[f64],
+        interpolation: Interpolation,
+    ) -> Result<Self, LpmError> {
         let n = values.len().max(1) as f64;
-        let phases: Vec<f64> = (0..values.len()).map(|i| i as f64 * period as f64 / n).collect();
+        let phases: Vec<f64> = (0..values.len())
+            .map(|i| i as f64 * period as f64 / n)
+            .collect();
         Self::table(period, &phases, values, interpolation)
     }
 
@@ -145,7 +231,13 @@ impl Curve {
             check(true, "cosine coefficient", c, "-", "finite")?;
             check(true, "sine coefficient", s, "-", "finite")?;
         }
-        Ok(Self { period: 1, repr: Repr::Fourier { mean, harmonics: harmonics.to_vec() } })
+        Ok(Self {
+            period: 1,
+            repr: Repr::Fourier {
+                mean,
+                harmonics: harmonics.to_vec(),
+            },
+        })
     }
 
     /// Period in whole mesh cycles.
@@ -178,14 +270,29 @@ impl Curve {
                         (c * cs - s * sn, c * sn + s * cs)
                     })
                     .collect();
-                Self { period: 1, repr: Repr::Fourier { mean: *mean, harmonics: rotated } }
+                Self {
+                    period: 1,
+                    repr: Repr::Fourier {
+                        mean: *mean,
+                        harmonics: rotated,
+                    },
+                }
             }
             Repr::Pieces { pieces, .. } => {
                 let period = self.period as f64;
                 let mut moved: Vec<Piece> = pieces
                     .iter()
-                    .map(|p| Piece { start: (p.start + shift).rem_euclid(period), ..*p })
-                    .map(|p| if p.start >= period { Piece { start: 0.0, ..p } } else { p })
+                    .map(|p| Piece {
+                        start: (p.start + shift).rem_euclid(period),
+                        ..*p
+                    })
+                    .map(|p| {
+                        if p.start >= period {
+                            Piece { start: 0.0, ..p }
+                        } else {
+                            p
+                        }
+                    })
                     .collect();
                 moved.sort_by(|a, b| a.start.total_cmp(&b.start));
                 Self::from_pieces(self.period, moved)
@@ -201,7 +308,9 @@ impl Curve {
         match &mut new.repr {
             Repr::Fourier { mean, harmonics } => {
                 *mean = factor * *mean + offset;
-                harmonics.iter_mut().for_each(|(c, s)| (*c, *s) = (factor * *c, factor * *s));
+                harmonics
+                    .iter_mut()
+                    .for_each(|(c, s)| (*c, *s) = (factor * *c, factor * *s));
             }
             Repr::Pieces { pieces, .. } => {
                 for p in pieces {
@@ -221,7 +330,12 @@ impl Curve {
             Repr::Pieces { pieces, .. } => {
                 let period = self.period as f64;
                 let all = (0..times)
-                    .flat_map(|r| pieces.iter().map(move |p| Piece { start: p.start + r as f64 * period, ..*p }))
+                    .flat_map(|r| {
+                        pieces.iter().map(move |p| Piece {
+                            start: p.start + r as f64 * period,
+                            ..*p
+                        })
+                    })
                     .collect();
                 Self::assemble(self.period * times, all)
             }
@@ -230,26 +344,48 @@ impl Curve {
 
     /// A rotation of `cycles` mesh cycles that follows `self` except in the cycles `first .. first + damaged.period()`,
     /// where it follows `damaged` (whose phase 0 falls on `first`). Both must be tables or steps.
-    pub fn with_cycles_replaced(&self, cycles: usize, first: usize, damaged: &Curve) -> Result<Self, LpmError> {
-        let misfit = |reason| Err(LpmError::Period { first: cycles, second: damaged.period, reason });
+    pub fn with_cycles_replaced(
+        &self,
+        cycles: usize,
+        first: usize,
+        damaged: &Curve,
+    ) -> Result<Self, LpmError> {
+        let misfit = |reason| {
+            Err(LpmError::Period {
+                first: cycles,
+                second: damaged.period,
+                reason,
+            })
+        };
         if !cycles.is_multiple_of(self.period) {
             return misfit("the rotation must be a multiple of the healthy curve's period");
         }
         if first + damaged.period > cycles {
             return misfit("the damaged stretch must end within the rotation");
         }
-        let (Repr::Pieces { pieces: bad, .. }, Repr::Pieces { .. }) = (&damaged.repr, &self.repr) else {
+        let (Repr::Pieces { pieces: bad, .. }, Repr::Pieces { .. }) = (&damaged.repr, &self.repr)
+        else {
             return misfit("cycles of a Fourier series cannot be replaced: tabulate it first");
         };
         let whole = self.repeated(cycles / self.period)?;
-        let Repr::Pieces { pieces: good, .. } = &whole.repr else { return misfit("not a table") };
+        let Repr::Pieces { pieces: good, .. } = &whole.repr else {
+            return misfit("not a table");
+        };
         let (lo, hi) = (first as f64, (first + damaged.period) as f64);
         let mut all: Vec<Piece> = good.iter().filter(|p| p.start < lo).copied().collect();
-        all.extend(bad.iter().map(|p| Piece { start: p.start + lo, kink: p.kink || p.start <= 0.0, ..*p }));
+        all.extend(bad.iter().map(|p| Piece {
+            start: p.start + lo,
+            kink: p.kink || p.start <= 0.0,
+            ..*p
+        }));
         if hi < cycles as f64 {
             let at = good.partition_point(|p| p.start <= hi).saturating_sub(1);
             if let Some(p) = good.get(at) {
-                all.push(Piece { start: hi, a: taylor_shift(p.a, hi - p.start), kink: true });
+                all.push(Piece {
+                    start: hi,
+                    a: taylor_shift(p.a, hi - p.start),
+                    kink: true,
+                });
             }
             all.extend(good.iter().filter(|p| p.start > hi));
         }
@@ -259,7 +395,12 @@ impl Curve {
     /// Least and largest value with their phases, from the ends and interior extrema of the pieces (exact up to
     /// rounding), or from 64 samples per wave of the highest harmonic of a Fourier series.
     pub fn range(&self) -> CurveRange {
-        let mut r = CurveRange { min: f64::INFINITY, min_phase: 0.0, max: f64::NEG_INFINITY, max_phase: 0.0 };
+        let mut r = CurveRange {
+            min: f64::INFINITY,
+            min_phase: 0.0,
+            max: f64::NEG_INFINITY,
+            max_phase: 0.0,
+        };
         let mut take = |t: f64, v: f64| {
             if v < r.min {
                 (r.min, r.min_phase) = (v, t);
@@ -271,14 +412,19 @@ impl Curve {
         match &self.repr {
             Repr::Fourier { harmonics, .. } => {
                 let n = 64 * (harmonics.len() + 1);
-                (0..n).map(|i| i as f64 / n as f64).for_each(|t| take(t, self.value(t)));
+                (0..n)
+                    .map(|i| i as f64 / n as f64)
+                    .for_each(|t| take(t, self.value(t)));
             }
             Repr::Pieces { pieces, .. } => {
                 for (i, p) in pieces.iter().enumerate() {
                     let end = pieces.get(i + 1).map_or(self.period as f64, |n| n.start);
                     let w = end - p.start;
-                    for u in [Some(0.0), Some(w)].into_iter().chain(quadratic_roots(p.a[1], 2.0 * p.a[2], 3.0 * p.a[3]))
-                    {
+                    for u in [Some(0.0), Some(w)].into_iter().chain(quadratic_roots(
+                        p.a[1],
+                        2.0 * p.a[2],
+                        3.0 * p.a[3],
+                    )) {
                         if let Some(u) = u.filter(|u| (0.0..=w).contains(u)) {
                             take(p.start + u, taylor_shift(p.a, u)[0]);
                         }
@@ -311,7 +457,9 @@ impl Curve {
     pub(crate) fn kinks(&self) -> Vec<f64> {
         match &self.repr {
             Repr::Fourier { .. } => Vec::new(),
-            Repr::Pieces { pieces, .. } => pieces.iter().filter(|p| p.kink).map(|p| p.start).collect(),
+            Repr::Pieces { pieces, .. } => {
+                pieces.iter().filter(|p| p.kink).map(|p| p.start).collect()
+            }
         }
     }
 
@@ -324,7 +472,11 @@ impl Curve {
     /// Value and slope at `tau` in `[0, period]`, using only the pieces `range` (so jumps are seen from one side).
     #[inline]
     pub(crate) fn value_and_slope_within(&self, tau: f64, range: (u32, u32)) -> (f64, f64) {
-        let piece = if range.0 == range.1 { range.0 } else { self.locate(tau).clamp(range.0, range.1) };
+        let piece = if range.0 == range.1 {
+            range.0
+        } else {
+            self.locate(tau).clamp(range.0, range.1)
+        };
         self.eval_in(tau, piece)
     }
 
@@ -334,7 +486,11 @@ impl Curve {
         match &self.repr {
             Repr::Fourier { .. } => self.eval_in(tau, 0).0,
             Repr::Pieces { pieces, .. } => {
-                let piece = if range.0 == range.1 { range.0 } else { self.locate(tau).clamp(range.0, range.1) };
+                let piece = if range.0 == range.1 {
+                    range.0
+                } else {
+                    self.locate(tau).clamp(range.0, range.1)
+                };
                 let p = &pieces[piece as usize];
                 let u = tau - p.start;
                 p.a[0] + u * (p.a[1] + u * (p.a[2] + u * p.a[3]))
@@ -390,7 +546,11 @@ impl Curve {
         if let (Some(first), Some(last)) = (pieces.first().copied(), pieces.last().copied())
             && first.start > 0.0
         {
-            let head = Piece { start: 0.0, a: taylor_shift(last.a, period as f64 - last.start), kink: false };
+            let head = Piece {
+                start: 0.0,
+                a: taylor_shift(last.a, period as f64 - last.start),
+                kink: false,
+            };
             pieces.insert(0, head);
         }
         Self::assemble(period, pieces)
@@ -405,7 +565,10 @@ impl Curve {
                 pieces.partition_point(|p| p.start <= t).saturating_sub(1) as u32
             })
             .collect();
-        Self { period, repr: Repr::Pieces { pieces, hint } }
+        Self {
+            period,
+            repr: Repr::Pieces { pieces, hint },
+        }
     }
 }
 
@@ -428,13 +591,25 @@ fn quadratic_roots(c: f64, b: f64, a: f64) -> [Option<f64>; 2] {
         return [None, None];
     }
     let q = -0.5 * (b + disc.sqrt().copysign(b));
-    [Some(q / a).filter(|r| r.is_finite()), Some(c / q).filter(|r| r.is_finite())]
+    [
+        Some(q / a).filter(|r| r.is_finite()),
+        Some(c / q).filter(|r| r.is_finite()),
+    ]
 }
 
-fn check_table(period: usize, phases: &[f64], values: &[f64], least: usize) -> Result<(), LpmError> {
+fn check_table(
+    period: usize,
+    phases: &[f64],
+    values: &[f64],
+    least: usize,
+) -> Result<(), LpmError> {
     check(period >= 1, "period", period as f64, "cycles", "at least 1")?;
     if phases.len() != values.len() {
-        return Err(LpmError::Length { what: "values of a table", found: values.len(), needed: "as many as phases" });
+        return Err(LpmError::Length {
+            what: "values of a table",
+            found: values.len(),
+            needed: "as many as phases",
+        });
     }
     if phases.len() < least {
         let needed = match least {
@@ -442,10 +617,20 @@ fn check_table(period: usize, phases: &[f64], values: &[f64], least: usize) -> R
             2 => "at least 2",
             _ => "at least 3",
         };
-        return Err(LpmError::Length { what: "points of a table", found: phases.len(), needed });
+        return Err(LpmError::Length {
+            what: "points of a table",
+            found: phases.len(),
+            needed,
+        });
     }
     for (index, (&phase, &value)) in phases.iter().zip(values).enumerate() {
-        let fault = |reason| Err(LpmError::Table { index, phase, reason });
+        let fault = |reason| {
+            Err(LpmError::Table {
+                index,
+                phase,
+                reason,
+            })
+        };
         if !value.is_finite() {
             return fault("value is not finite");
         }
@@ -458,7 +643,11 @@ fn check_table(period: usize, phases: &[f64], values: &[f64], least: usize) -> R
     }
     if phases.len() > 1 && period as f64 - phases[phases.len() - 1] + phases[0] < 1e-9 {
         let index = phases.len() - 1;
-        return Err(LpmError::Table { index, phase: phases[index], reason: "coincides with the first point" });
+        return Err(LpmError::Table {
+            index,
+            phase: phases[index],
+            reason: "coincides with the first point",
+        });
     }
     Ok(())
 }
@@ -492,7 +681,13 @@ fn cyclic_spline(width: &[f64], slope: &[f64]) -> Result<Vec<f64>, LpmError> {
     let z = solve(u);
     let factor = (y[0] + corner / g * y[n - 1]) / (1.0 + z[0] + corner / g * z[n - 1]);
     let m: Vec<f64> = y.iter().zip(&z).map(|(y, z)| y - factor * z).collect();
-    if m.iter().all(|v| v.is_finite()) { Ok(m) } else { Err(LpmError::Singular { place: "periodic spline" }) }
+    if m.iter().all(|v| v.is_finite()) {
+        Ok(m)
+    } else {
+        Err(LpmError::Singular {
+            place: "periodic spline",
+        })
+    }
 }
 
 #[cfg(test)]
@@ -505,12 +700,21 @@ mod tests {
         let error = |n: usize, kind| -> Result<f64, LpmError> {
             let values: Vec<f64> = (0..n).map(|i| f(i as f64 / n as f64)).collect();
             let c = Curve::samples(1, &values, kind)?;
-            Ok((0..997).map(|i| i as f64 / 997.0).map(|t| (c.value(t) - f(t)).abs()).fold(0.0, f64::max))
+            Ok((0..997)
+                .map(|i| i as f64 / 997.0)
+                .map(|t| (c.value(t) - f(t)).abs())
+                .fold(0.0, f64::max))
         };
         for (kind, order) in [(Interpolation::Linear, 2.0), (Interpolation::Spline, 4.0)] {
-            let e: Vec<f64> = [20, 40, 80, 160].iter().map(|&n| error(n, kind)).collect::<Result<_, _>>()?;
+            let e: Vec<f64> = [20, 40, 80, 160]
+                .iter()
+                .map(|&n| error(n, kind))
+                .collect::<Result<_, _>>()?;
             let slope = (e[0] / e[3]).log2() / 3.0;
-            assert!((slope - order).abs() < 0.15, "{kind:?}: order {slope}, errors {e:?}");
+            assert!(
+                (slope - order).abs() < 0.15,
+                "{kind:?}: order {slope}, errors {e:?}"
+            );
         }
         Ok(())
     }
@@ -518,7 +722,15 @@ mod tests {
     #[test]
     fn analytic_rectangular_and_shifted_jumps() -> Result<(), LpmError> {
         let c = Curve::rectangular(1.0, 2.0, 0.7, 0.5)?;
-        for (t, v) in [(0.0, 2.0), (0.19, 2.0), (0.2, 1.0), (0.69, 1.0), (0.7, 2.0), (-0.1, 2.0), (5.5, 1.0)] {
+        for (t, v) in [
+            (0.0, 2.0),
+            (0.19, 2.0),
+            (0.2, 1.0),
+            (0.69, 1.0),
+            (0.7, 2.0),
+            (-0.1, 2.0),
+            (5.5, 1.0),
+        ] {
             assert_eq!(c.value(t), v, "at {t}");
         }
         assert!((c.mean() - 1.5).abs() < 1e-15);
@@ -538,7 +750,11 @@ mod tests {
         assert_eq!(w.period(), 7);
         for i in 0..700 {
             let t = i as f64 * 0.01 + 0.001;
-            let want = if (3.0..5.0).contains(&t) { 0.5 * h.value(t) } else { h.value(t) };
+            let want = if (3.0..5.0).contains(&t) {
+                0.5 * h.value(t)
+            } else {
+                h.value(t)
+            };
             assert!((w.value(t) - want).abs() < 1e-12, "at {t}");
         }
         Ok(())
@@ -565,7 +781,9 @@ mod tests {
         assert!(Curve::table(1, &[0.5, 0.2], &[1.0, 2.0], Interpolation::Linear).is_err());
         assert!(Curve::table(1, &[0.0, 1.0], &[1.0, 2.0], Interpolation::Linear).is_err());
         assert!(Curve::table(1, &[0.0, f64::NAN], &[1.0, 2.0], Interpolation::Linear).is_err());
-        assert!(Curve::table(1, &[0.0, 0.5], &[1.0, f64::INFINITY], Interpolation::Linear).is_err());
+        assert!(
+            Curve::table(1, &[0.0, 0.5], &[1.0, f64::INFINITY], Interpolation::Linear).is_err()
+        );
         assert!(Curve::samples(1, &[], Interpolation::Spline).is_err());
         assert!(Curve::table(0, &[0.0, 0.5], &[1.0, 2.0], Interpolation::Linear).is_err());
         assert!(Curve::constant(f64::NAN).is_err());

@@ -42,7 +42,9 @@ pub enum LpmError {
         needed: &'static str,
     },
     /// The mesh stiffness is not positive everywhere.
-    #[error("mesh stiffness falls to {value} N/m near mesh cycle {phase}: must be positive everywhere")]
+    #[error(
+        "mesh stiffness falls to {value} N/m near mesh cycle {phase}: must be positive everywhere"
+    )]
     StiffnessNotPositive {
         /// Least stiffness found (N/m).
         value: f64,
@@ -50,7 +52,9 @@ pub enum LpmError {
         phase: f64,
     },
     /// Drive and coast flanks overlap: the clearance is used up by the transmission error.
-    #[error("backlash {backlash} m is used up: the drive flanks touch at {drive} m near mesh cycle {phase}")]
+    #[error(
+        "backlash {backlash} m is used up: the drive flanks touch at {drive} m near mesh cycle {phase}"
+    )]
     Jammed {
         /// Clearance along the line of action (m).
         backlash: f64,
@@ -125,6 +129,11 @@ pub(crate) fn check(
     if ok && value.is_finite() {
         Ok(value)
     } else {
-        Err(LpmError::OutOfRange { quantity, value, unit, allowed })
+        Err(LpmError::OutOfRange {
+            quantity,
+            value,
+            unit,
+            allowed,
+        })
     }
 }
