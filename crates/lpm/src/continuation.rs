@@ -21,7 +21,7 @@ use crate::floquet::{Multiplier, Stability, multipliers, stability};
 use crate::integrate::{Method, Options, Runner};
 use crate::linear;
 use crate::model::{Model, State, with_system};
-use crate::periodic::{ShootingOptions, distance, newton_matrix, period_map};
+use crate::periodic::{ShootingOptions, distance, follow, newton_matrix, period_map, resolved};
 use crate::response::Sampling;
 use crate::sweep::Measure;
 use crate::system::{System, Vector};
@@ -265,6 +265,7 @@ struct Unknown<const N: usize> {
 }
 
 /// A converged point with its Jacobian `[dP/dz - 1, dP/df]` in natural units.
+#[derive(Clone)]
 struct Solved<const N: usize> {
     u: Unknown<N>,
     jacobian: Vec<Vec<f64>>,
@@ -277,24 +278,33 @@ struct Tracer<'a, const N: usize> {
     o: &'a ContinuationOptions,
     f_unit: f64,
     method: Method,
+    /// Unknown components of the state: those the method resolves.
+    by: Vec<usize>,
 }
 
 impl<const N: usize> Tracer<'_, N> {
     fn add(&self, u: &Unknown<N>, direction: &[f64], ds: f64) -> Unknown<N> {
         let mut r = *u;
-        for i in 0..2 * N {
-            r.z.set(i, u.z.get(i) + ds * direction[i] * self.s.unit(i));
+        for (&i, d) in self.by.iter().zip(direction) {
+            r.z.set(i, u.z.get(i) + ds * d * self.s.unit(i));
         }
-        r.f += ds * direction[2 * N] * self.f_unit;
+        r.f += ds * self.frequency_of(direction) * self.f_unit;
         r
     }
 
     fn difference(&self, a: &Unknown<N>, b: &Unknown<N>) -> Vec<f64> {
-        let mut d: Vec<f64> = (0..2 * N)
-            .map(|i| (a.z.get(i) - b.z.get(i)) / self.s.unit(i))
+        let mut d: Vec<f64> = self
+            .by
+            .iter()
+            .map(|&i| (a.z.get(i) - b.z.get(i)) / self.s.unit(i))
             .collect();
         d.push((a.f - b.f) / self.f_unit);
         d
+    }
+
+    /// Frequency component of a direction.
+    fn frequency_of(&self, direction: &[f64]) -> f64 {
+        direction[self.by.len()]
     }
 
     /// Residual and Jacobian rows at `u`.
@@ -303,12 +313,12 @@ impl<const N: usize> Tracer<'_, N> {
         u: &Unknown<N>,
     ) -> Result<(Vector<N>, Vec<Vec<f64>>, Vec<Vector<N>>), LpmError> {
         let run = Runner::new(self.s, &self.o.integration, u.f)?;
-        let (end, columns) = period_map(&run, u.z, 1, true)?;
+        let (end, columns) = period_map(&run, u.z, 1, &self.by)?;
         let df = FREQUENCY_STEP * u.f;
         let other = Runner::new(self.s, &self.o.integration, u.f + df)?;
-        let (moved, _) = period_map(&other, u.z, 1, false)?;
-        let mut rows = newton_matrix(self.s, &columns);
-        for (i, row) in rows.iter_mut().enumerate() {
+        let (moved, _) = period_map(&other, u.z, 1, &[])?;
+        let mut rows = newton_matrix(self.s, &self.by, &columns);
+        for (row, &i) in rows.iter_mut().zip(&self.by) {
             row.push((moved.get(i) - end.get(i)) / df * self.f_unit / self.s.unit(i));
         }
         Ok((end, rows, columns))
@@ -325,6 +335,7 @@ impl<const N: usize> Tracer<'_, N> {
             let (end, jacobian, columns) = self.linearise(&u).ok()?;
             let residual = distance(self.s, self.method, &end, &u.z);
             if residual < self.o.tolerance {
+                u.z = follow(&self.by, &u.z, &end);
                 return Some(Solved {
                     u,
                     jacobian,
@@ -334,8 +345,10 @@ impl<const N: usize> Tracer<'_, N> {
             }
             let mut rows = jacobian;
             rows.push(tangent.to_vec());
-            let mut rhs: Vec<f64> = (0..2 * N)
-                .map(|i| (u.z.get(i) - end.get(i)) / self.s.unit(i))
+            let mut rhs: Vec<f64> = self
+                .by
+                .iter()
+                .map(|&i| (u.z.get(i) - end.get(i)) / self.s.unit(i))
                 .collect();
             let along: f64 = self
                 .difference(&u, base)
@@ -363,8 +376,8 @@ impl<const N: usize> Tracer<'_, N> {
     fn tangent(&self, p: &Solved<N>, previous: &[f64]) -> Option<Vec<f64>> {
         let mut rows = p.jacobian.clone();
         rows.push(previous.to_vec());
-        let mut rhs = vec![0.0; 2 * N + 1];
-        rhs[2 * N] = 1.0;
+        let mut rhs = vec![0.0; self.by.len()];
+        rhs.push(1.0);
         let t = linear::solve(rows, rhs, "tangent").ok()?;
         let size = t.iter().map(|v| v * v).sum::<f64>().sqrt();
         Some(t.into_iter().map(|v| v / size).collect())
@@ -375,7 +388,7 @@ impl<const N: usize> Tracer<'_, N> {
         let cycles = self.s.excitation().period();
         let response =
             model.simulate(p.u.f, &state, cycles, &self.o.sampling, &self.o.integration)?;
-        let multipliers = multipliers(self.s, &p.columns)?;
+        let multipliers = multipliers(self.s, &self.by, &p.columns)?;
         Ok(BranchPoint {
             mesh_frequency: p.u.f,
             state,
@@ -385,9 +398,19 @@ impl<const N: usize> Tracer<'_, N> {
         })
     }
 
-    /// Point between `base` and the one `ds` further where the tangent has no frequency component.
-    fn turning(&self, base: &Unknown<N>, tangent: &[f64], ds: f64, end: f64) -> Option<Solved<N>> {
-        let ((mut a, mut fa), (mut b, mut fb)) = ((0.0, tangent[2 * N]), (ds, end));
+    /// Point between `base` and `far`, `ds` further, where the tangent has no frequency component; `end` is that of `far`.
+    ///
+    /// Where noise of the integration keeps the corrector from the point itself, the nearest point found counts.
+    fn turning(
+        &self,
+        base: &Unknown<N>,
+        tangent: &[f64],
+        ds: f64,
+        far: &Solved<N>,
+        end: f64,
+    ) -> Solved<N> {
+        let ((mut a, mut fa), (mut b, mut fb)) = ((0.0, self.frequency_of(tangent)), (ds, end));
+        let mut best = (end.abs(), far.clone());
         let mut side = 0i8;
         for i in 0..40 {
             let x = if i % 8 == 7 {
@@ -395,10 +418,16 @@ impl<const N: usize> Tracer<'_, N> {
             } else {
                 (a * fb - b * fa) / (fb - fa)
             };
-            let p = self.correct(base, tangent, x)?;
-            let fx = self.tangent(&p, tangent)?[2 * N];
+            let found = self.correct(base, tangent, x);
+            let Some((p, t)) = found.and_then(|p| self.tangent(&p, tangent).map(|t| (p, t))) else {
+                break;
+            };
+            let fx = self.frequency_of(&t);
+            if fx.abs() < best.0 {
+                best = (fx.abs(), p);
+            }
             if fx.abs() < 1e-6 || b - a < 1e-9 * ds {
-                return Some(p);
+                break;
             }
             if (fx > 0.0) == (fa > 0.0) {
                 (a, fa) = (x, fx);
@@ -414,7 +443,7 @@ impl<const N: usize> Tracer<'_, N> {
                 side = -1;
             }
         }
-        None
+        best.1
     }
 }
 
@@ -431,6 +460,7 @@ fn trace<const N: usize>(
         o,
         f_unit: s.omega / std::f64::consts::TAU,
         method,
+        by: resolved(s, method),
     };
     let u = Unknown { z, f: frequency };
     let (_, jacobian, columns) = t.linearise(&u)?;
@@ -440,8 +470,8 @@ fn trace<const N: usize>(
         columns,
         iterations: 0,
     };
-    let mut start = vec![0.0; 2 * N + 1];
-    start[2 * N] = if o.upwards { 1.0 } else { -1.0 };
+    let mut start = vec![0.0; t.by.len()];
+    start.push(if o.upwards { 1.0 } else { -1.0 });
     let mut tangent = t.tangent(&here, &start).ok_or(LpmError::Singular {
         place: "first tangent of a branch",
     })?;
@@ -467,15 +497,14 @@ fn trace<const N: usize>(
             continue;
         };
         out.iterations += point.iterations;
-        if next[2 * N] * tangent[2 * N] < 0.0
-            && let Some(fold) = t.turning(&here.u, &tangent, ds, next[2 * N])
-        {
+        if t.frequency_of(&next) * t.frequency_of(&tangent) < 0.0 {
+            let fold = t.turning(&here.u, &tangent, ds, &point, t.frequency_of(&next));
             let point = t.report(model, &fold)?;
             let after = out.points.len() - 1;
             out.turning_points.push(TurningPoint {
                 point,
                 after,
-                is_maximum: tangent[2 * N] > 0.0,
+                is_maximum: t.frequency_of(&tangent) > 0.0,
             });
         }
         let outside = point.u.f < o.from || point.u.f > o.to;

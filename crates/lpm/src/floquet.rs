@@ -13,6 +13,7 @@ use crate::error::LpmError;
 use crate::excitation::Excitation;
 use crate::integrate::{Cursor, Options, Runner};
 use crate::model::{GearPair, Model, Supports, with_system};
+use crate::periodic::resolved;
 use crate::system::{System, Vector};
 use nalgebra::DMatrix;
 
@@ -77,21 +78,23 @@ impl Model {
         debug_assert!(model.supports() != Supports::Integrated || model.coordinates() == 3);
         with_system!(model, s => {
             let run = Runner { control_tangents: true, ..Runner::new(s, options, mesh_frequency)? };
-            let mut cursor = Cursor::with_identity(0.0, Vector::ZERO);
+            let by = resolved(s, run.method);
+            let mut cursor = Cursor::with_tangents(0.0, Vector::ZERO, &by);
             run.advance(&mut cursor, excitation.period() as f64, |_| {})?;
-            multipliers(s, &cursor.tangents)
+            multipliers(s, &by, &cursor.tangents)
         })
     }
 }
 
-/// Eigenvalues of the matrix whose columns are `columns`, largest modulus first.
+/// Eigenvalues of the derivative by the components `by` whose columns are `columns`, largest modulus first.
 pub(crate) fn multipliers<const N: usize>(
     s: &System<N>,
+    by: &[usize],
     columns: &[Vector<N>],
 ) -> Result<Vec<Multiplier>, LpmError> {
-    let n = 2 * N;
+    let n = by.len();
     // In natural units displacement and velocity entries are alike in size.
-    let entry = |i: usize, j: usize| columns[j].get(i) * s.unit(j) / s.unit(i);
+    let entry = |i: usize, j: usize| columns[j].get(by[i]) * s.unit(by[j]) / s.unit(by[i]);
     let mut found = if n == 2 {
         let (a, b, c, d) = (entry(0, 0), entry(0, 1), entry(1, 0), entry(1, 1));
         let (half, det) = (0.5 * (a + d), a * d - b * c);

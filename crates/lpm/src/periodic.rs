@@ -3,7 +3,8 @@
 //! The period map `P` carries the state at phase 0 of the excitation over one period of it (times `multiple` for
 //! subharmonic motion). Shooting solves `P(z) - z = 0` by Newton's method with the exact derivative of the flow, which the
 //! integrator carries along (linear inside a contact phase, saltation matrix across events); it finds stable and
-//! unstable solutions alike. Waiting follows the physics, finds stable ones only, and tells subharmonic
+//! unstable solutions alike. Where an implicit method leaves the ringing of stiff supports unresolved, Newton's method
+//! solves for the other coordinates and the supports follow. Waiting follows the physics, finds stable ones only, and tells subharmonic
 //! and non-periodic motion apart.
 //!
 //! Residuals and distances are relative to the static scale of the pair (see [`crate::Options`]).
@@ -93,7 +94,7 @@ pub struct Orbit {
     pub state: State,
     /// Periods of the excitation in one period of the motion.
     pub multiple: usize,
-    /// Floquet multipliers over the period of the motion, largest modulus first.
+    /// Floquet multipliers over the period of the motion, largest modulus first, of the coordinates the method resolves.
     pub multipliers: Vec<Multiplier>,
     /// Relative residual.
     pub residual: f64,
@@ -211,8 +212,29 @@ impl Model {
     }
 }
 
-/// Largest difference in natural units. Translations on stiff supports are left out unless the method resolves them: they
-/// follow the mesh force, and their ringing is not part of what an implicit method computes.
+/// Components of the state that a method resolves. Translations on stiff supports count for the explicit method only: an
+/// implicit one lets them follow the mesh force and damps their ringing, so that after a period they depend on the choice
+/// of steps more than on where they started.
+pub(crate) fn resolved<const N: usize>(s: &System<N>, method: Method) -> Vec<usize> {
+    (0..2 * N)
+        .filter(|i| method == Method::DormandPrince || !s.is_stiff(i % N))
+        .collect()
+}
+
+/// `target` with the components that are not resolved taken from `source`.
+pub(crate) fn follow<const N: usize>(
+    resolved: &[usize],
+    target: &Vector<N>,
+    source: &Vector<N>,
+) -> Vector<N> {
+    let mut r = *source;
+    for &i in resolved {
+        r.set(i, target.get(i));
+    }
+    r
+}
+
+/// Largest difference in natural units over the resolved components.
 pub(crate) fn distance<const N: usize>(
     s: &System<N>,
     method: Method,
@@ -294,18 +316,14 @@ fn steady<const N: usize>(
     done(&cursor.z, None, o.max_periods, residual)
 }
 
-/// End of the period map with its derivative as columns.
+/// End of the period map, with its derivative by the components `by` as columns.
 pub(crate) fn period_map<const N: usize>(
     run: &Runner<N>,
     z: Vector<N>,
     multiple: usize,
-    derivative: bool,
+    by: &[usize],
 ) -> Result<(Vector<N>, Vec<Vector<N>>), LpmError> {
-    let mut c = if derivative {
-        Cursor::with_identity(0.0, z)
-    } else {
-        Cursor::new(0.0, z)
-    };
+    let mut c = Cursor::with_tangents(0.0, z, by);
     run.advance(
         &mut c,
         (multiple * run.system.excitation().period()) as f64,
@@ -314,12 +332,17 @@ pub(crate) fn period_map<const N: usize>(
     Ok((c.z, c.tangents))
 }
 
-/// Rows of `dP/dz - 1` in natural units.
-pub(crate) fn newton_matrix<const N: usize>(s: &System<N>, columns: &[Vector<N>]) -> Vec<Vec<f64>> {
-    (0..2 * N)
-        .map(|i| {
-            (0..2 * N)
-                .map(|j| columns[j].get(i) * s.unit(j) / s.unit(i) - if i == j { 1.0 } else { 0.0 })
+/// Rows of `dP/dz - 1` over the components `by`, in natural units.
+pub(crate) fn newton_matrix<const N: usize>(
+    s: &System<N>,
+    by: &[usize],
+    columns: &[Vector<N>],
+) -> Vec<Vec<f64>> {
+    by.iter()
+        .map(|&i| {
+            by.iter()
+                .zip(columns)
+                .map(|(&j, c)| c.get(i) * s.unit(j) / s.unit(i) - if i == j { 1.0 } else { 0.0 })
                 .collect()
         })
         .collect()
@@ -332,8 +355,9 @@ fn shoot<const N: usize>(
     o: &ShootingOptions,
 ) -> Result<Orbit, LpmError> {
     let run = Runner::new(s, &o.integration, frequency)?;
+    let by = resolved(s, run.method);
     let mut z = guess;
-    let (mut end, mut columns) = period_map(&run, z, o.multiple, true)?;
+    let (mut end, mut columns) = period_map(&run, z, o.multiple, &by)?;
     let mut residual = distance(s, run.method, &end, &z);
     let mut status = OrbitStatus::IterationLimit;
     let mut iterations = 0;
@@ -346,10 +370,11 @@ fn shoot<const N: usize>(
             break;
         }
         iterations += 1;
-        let rhs = (0..2 * N)
-            .map(|i| (z.get(i) - end.get(i)) / s.unit(i))
+        let rhs = by
+            .iter()
+            .map(|&i| (z.get(i) - end.get(i)) / s.unit(i))
             .collect();
-        let Ok(step) = linear::solve(newton_matrix(s, &columns), rhs, "shooting") else {
+        let Ok(step) = linear::solve(newton_matrix(s, &by, &columns), rhs, "shooting") else {
             status = OrbitStatus::Singular;
             break;
         };
@@ -357,10 +382,10 @@ fn shoot<const N: usize>(
         let mut fraction = 1.0;
         for attempt in 0..7 {
             let mut trial = z;
-            for (i, d) in step.iter().enumerate() {
+            for (&i, d) in by.iter().zip(&step) {
                 trial.set(i, z.get(i) + fraction * d * s.unit(i));
             }
-            let mapped = period_map(&run, trial, o.multiple, true);
+            let mapped = period_map(&run, trial, o.multiple, &by);
             if let Ok((e, c)) = mapped {
                 let r = distance(s, run.method, &e, &trial);
                 if r < residual || attempt == 6 {
@@ -373,9 +398,9 @@ fn shoot<const N: usize>(
     }
     Ok(Orbit {
         mesh_frequency: frequency,
-        state: s.export(&z),
+        state: s.export(&follow(&by, &z, &end)),
         multiple: o.multiple,
-        multipliers: multipliers(s, &columns)?,
+        multipliers: multipliers(s, &by, &columns)?,
         residual,
         iterations,
         status,

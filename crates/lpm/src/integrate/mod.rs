@@ -217,11 +217,12 @@ impl<const N: usize> Cursor<N> {
         }
     }
 
-    /// With one tangent vector per component of the state: together they become the derivative of the flow.
-    pub fn with_identity(tau: f64, z: Vector<N>) -> Self {
+    /// With a unit tangent vector for each component in `by`: together they become the derivative of the flow by these.
+    pub fn with_tangents(tau: f64, z: Vector<N>, by: &[usize]) -> Self {
         let mut c = Self::new(tau, z);
-        c.tangents = (0..2 * N)
-            .map(|i| {
+        c.tangents = by
+            .iter()
+            .map(|&i| {
                 let mut t = Vector::ZERO;
                 t.set(i, 1.0);
                 t
