@@ -217,7 +217,7 @@ impl Model {
 /// of steps more than on where they started.
 pub(crate) fn resolved<const N: usize>(s: &System<N>, method: Method) -> Vec<usize> {
     (0..2 * N)
-        .filter(|i| method == Method::DormandPrince || !s.is_stiff(i % N))
+        .filter(|i| method.resolves_all() || !s.is_stiff(i % N))
         .collect()
 }
 
@@ -241,7 +241,7 @@ pub(crate) fn distance<const N: usize>(
     a: &Vector<N>,
     b: &Vector<N>,
 ) -> f64 {
-    let counts = |i: usize| method == Method::DormandPrince || !s.is_stiff(i % N);
+    let counts = |i: usize| method.resolves_all() || !s.is_stiff(i % N);
     (0..2 * N)
         .filter(|i| counts(*i))
         .map(|i| (a.get(i) - b.get(i)).abs() / s.unit(i))

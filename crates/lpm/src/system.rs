@@ -293,12 +293,18 @@ impl<const N: usize> System<N> {
         i > 0 && self.stiffness[i] >= (STIFF_RATIO * self.omega).powi(2) * self.mass[i]
     }
 
-    /// Weighted size of an error (1 = the displacement scale): largest over the coordinates that are resolved.
+    /// Weighted size of an error (1 = the displacement scale): largest over the coordinates, those on stiff supports only
+    /// where `all` is set (an explicit method would be unstable without them).
     #[inline]
-    pub fn norm(&self, e: &Vector<N>) -> f64 {
+    pub fn norm(&self, e: &Vector<N>, all: bool) -> f64 {
         let mut m = (e.q[0].abs() / self.scale).max(e.v[0].abs() / (self.scale * self.omega));
         for i in 1..N {
-            if !self.is_stiff(i) {
+            if all {
+                // In units of the support's own give, small on stiff supports: its force must be right.
+                m = m
+                    .max(e.q[i].abs() / self.unit(i))
+                    .max(e.v[i].abs() / self.unit(N + i));
+            } else if !self.is_stiff(i) {
                 let own = (self.stiffness[i] / self.mass[i]).sqrt();
                 m = m
                     .max(e.q[i].abs() / self.scale)

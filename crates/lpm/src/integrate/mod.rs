@@ -7,7 +7,7 @@
 //!
 //! Tolerance is relative to the static scale of the pair: displacements to `max(f_0/k, |delta_0|)`, velocities to that
 //! times the mesh frequency in rad/s. Translations on supports whose own frequency is more than ten times the mesh
-//! frequency take no part in the error control: there the L-stable method follows the quasi-static
+//! frequency take no part in the error control of the implicit methods: there the L-stable method follows the quasi-static
 //! support deflection and damps the ringing of the support, and the step is set by the mesh.
 //!
 //! Tests: `tests/closed_form.rs`, `tests/convergence.rs`, `tests/extreme.rs`.
@@ -50,6 +50,11 @@ impl Method {
             Self::Esdirk => "esdirk4",
             Self::Newmark => "newmark2",
         }
+    }
+
+    /// Must follow every motion, that of stiff supports too.
+    pub(crate) fn resolves_all(self) -> bool {
+        self == Self::DormandPrince
     }
 
     /// Order of the local error estimate: the estimate shrinks with this power of the step.
@@ -329,7 +334,10 @@ impl<'a, const N: usize> Runner<'a, N> {
                 let StepControl::Adaptive { tolerance } = self.options.step else {
                     break (step, after);
                 };
-                let size = s.norm(&error).max(self.tangent_error(cursor, &step)) / tolerance;
+                let size = s
+                    .norm(&error, self.method.resolves_all())
+                    .max(self.tangent_error(cursor, &step))
+                    / tolerance;
                 if size <= 1.0 && after.is_finite() {
                     let grow = if size > 0.0 {
                         0.9 * size.powf(-1.0 / self.method.estimate_power())
@@ -426,7 +434,7 @@ impl<'a, const N: usize> Runner<'a, N> {
         let linear = step.homogeneous();
         let size = |(j, t): (usize, &Vector<N>)| {
             let e = linear.apply(self.system, t).1;
-            self.system.norm(&e) * self.system.unit(j)
+            self.system.norm(&e, self.method.resolves_all()) * self.system.unit(j)
         };
         cursor
             .tangents
