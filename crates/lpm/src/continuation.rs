@@ -179,6 +179,35 @@ impl Branch {
             .collect()
     }
 
+    /// Frequency ranges (Hz) in which the curve holds more than one stable solution, ascending; neighbouring turning points and ends bound them.
+    pub fn coexistence(&self) -> Vec<(f64, f64)> {
+        let mut ends: Vec<f64> = self
+            .turning_points
+            .iter()
+            .map(|t| t.point.mesh_frequency)
+            .chain(self.points.first().map(|p| p.mesh_frequency))
+            .chain(self.points.last().map(|p| p.mesh_frequency))
+            .collect();
+        ends.extend(
+            self.stability_changes()
+                .iter()
+                .map(|c| self.points[c.0].mesh_frequency),
+        );
+        ends.sort_by(f64::total_cmp);
+        let mut found: Vec<(f64, f64)> = Vec::new();
+        for w in ends.windows(2) {
+            let stable = self.at(0.5 * (w[0] + w[1])).iter().filter(|p| p.1).count();
+            if stable < 2 || w[0] == w[1] {
+                continue;
+            }
+            match found.last_mut() {
+                Some(last) if last.1 == w[0] => last.1 = w[1],
+                _ => found.push((w[0], w[1])),
+            }
+        }
+        found
+    }
+
     /// Points and turning points in order along the curve.
     pub fn curve(&self) -> Vec<&BranchPoint> {
         let mut turning = self.turning_points.iter().peekable();
