@@ -14,7 +14,7 @@
 //! Turning points (`df/ds = 0`) are located on the curve by regula falsi on the frequency component of the tangent.
 //! Points where a multiplier crosses the unit circle elsewhere are reported as intervals between neighbours.
 //!
-//! Tests: `tests/resonance.rs`.
+//! Tests: `tests/periodic.rs`.
 
 use crate::error::{LpmError, check};
 use crate::floquet::{Multiplier, Stability, multipliers, stability};
@@ -302,6 +302,9 @@ struct Solved<const N: usize> {
     iterations: usize,
 }
 
+/// End of the period map, Jacobian rows, columns of the derivative.
+type Linearised<const N: usize> = (Vector<N>, Vec<Vec<f64>>, Vec<Vector<N>>);
+
 struct Tracer<'a, const N: usize> {
     s: &'a System<N>,
     o: &'a ContinuationOptions,
@@ -337,10 +340,7 @@ impl<const N: usize> Tracer<'_, N> {
     }
 
     /// Residual and Jacobian rows at `u`.
-    fn linearise(
-        &self,
-        u: &Unknown<N>,
-    ) -> Result<(Vector<N>, Vec<Vec<f64>>, Vec<Vector<N>>), LpmError> {
+    fn linearise(&self, u: &Unknown<N>) -> Result<Linearised<N>, LpmError> {
         let run = Runner::new(self.s, &self.o.integration, u.f)?;
         let (end, columns) = period_map(&run, u.z, 1, &self.by)?;
         let df = FREQUENCY_STEP * u.f;

@@ -14,6 +14,9 @@
 use crate::error::{LpmError, check};
 use std::f64::consts::TAU;
 
+/// Phases closer than this (mesh cycles) are one.
+pub(crate) const SAME_PHASE: f64 = 1e-10;
+
 /// How the values between the points of a table are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Interpolation {
@@ -245,16 +248,16 @@ impl Curve {
         self.period
     }
 
-    /// Value at phase `tau` (any finite number of mesh cycles); from the right at a jump.
+    /// Value at phase `tau` (any finite number of mesh cycles); from the right at a jump, and within 1e-10 cycles before it.
     pub fn value(&self, tau: f64) -> f64 {
-        let t = self.wrap(tau);
-        self.eval_in(t, self.locate(t)).0
+        self.value_and_slope(tau).0
     }
 
     /// Value and slope (per mesh cycle) at phase `tau`; from the right at a jump.
     pub fn value_and_slope(&self, tau: f64) -> (f64, f64) {
-        let t = self.wrap(tau);
-        self.eval_in(t, self.locate(t))
+        // A phase computed as a multiple of a sampling step misses a jump by rounding.
+        let near = self.wrap(tau + SAME_PHASE);
+        self.eval_in((near - SAME_PHASE).max(0.0), self.locate(near))
     }
 
     /// The curve moved to later phases by `shift` cycles: `new(tau) = old(tau - shift)`.
@@ -693,6 +696,21 @@ fn cyclic_spline(width: &[f64], slope: &[f64]) -> Result<Vec<f64>, LpmError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn invariant_a_jump_met_up_to_rounding_counts_as_reached() -> Result<(), LpmError> {
+        // 0.82 cycles after every start, by three routes of rounding.
+        let wave = Curve::rectangular(1.0, 2.0, 0.18, 0.64)?;
+        let rotation = wave.with_cycles_replaced(27, 14, &wave.scaled(10.0, 0.0)?)?;
+        for i in 0..27 {
+            for t in [f64::from(i) + 0.82, f64::from(100 * i + 82) / 100.0] {
+                assert_eq!(wave.value(t), 1.0, "{t}");
+                assert_eq!(rotation.value(t), if i == 14 { 10.0 } else { 1.0 }, "{t}");
+                assert_eq!(wave.value(t - 1e-9), 2.0, "{t}");
+            }
+        }
+        Ok(())
+    }
 
     #[test]
     fn order_spline_is_fourth_order_and_linear_second() -> Result<(), LpmError> {

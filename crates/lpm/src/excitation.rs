@@ -11,13 +11,11 @@
 //!
 //! Tests: `invariant_segments_cover_the_period` below.
 
-use crate::curve::Curve;
+use crate::curve::{Curve, SAME_PHASE};
 use crate::error::{LpmError, check};
 
 /// Longest common period accepted (mesh cycles).
 const MAX_PERIOD: usize = 100_000;
-/// Kinks closer than this (mesh cycles) are one.
-const SAME_PHASE: f64 = 1e-10;
 
 /// Mesh stiffness and static transmission error over the mesh cycle.
 #[derive(Debug, Clone, PartialEq)]

@@ -13,10 +13,15 @@
 
 use crate::error::{LpmError, check};
 use crate::floquet::{Multiplier, Stability, multipliers, stability};
-use crate::integrate::{Cursor, Method, Options, Runner};
+use crate::integrate::{Cursor, Method, Options, Runner, StepControl};
 use crate::linear;
 use crate::model::{Model, State, with_system};
 use crate::system::{System, Vector};
+
+/// Adaptive steps repeat a period to within this many tolerances.
+const NOISE: f64 = 30.0;
+/// Periods without a halving of the change after which it counts as noise, near the level of the noise.
+const STALE_PERIODS: usize = 20;
 
 /// Options of [`Model::shoot`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,7 +126,8 @@ impl Orbit {
 pub struct SteadyOptions {
     /// Integration.
     pub integration: Options,
-    /// Relative change from period to period at which the motion counts as steady (1e-12 to 0.1).
+    /// Relative change from period to period at which the motion counts as steady (1e-12 to 0.1). Adaptive integration
+    /// repeats itself to some thirty times its own tolerance: where this is less, that counts.
     pub tolerance: f64,
     /// Periods of the excitation after which the wait ends.
     pub max_periods: usize,
@@ -259,6 +265,13 @@ fn steady<const N: usize>(
     let mut cursor = Cursor::new(0.0, start);
     let mut history = vec![start];
     let mut next_polish = 1e-2;
+    let noise = match o.integration.step {
+        StepControl::Adaptive { tolerance } => NOISE * tolerance,
+        StepControl::Fixed { .. } => 0.0,
+    };
+    let tolerance = o.tolerance.max(noise);
+    // Least change so far, and periods since it was last halved.
+    let (mut least, mut stale) = (f64::INFINITY, 0);
     let done = |state: &Vector<N>, multiple, periods, residual| {
         Ok(Steady {
             state: s.export(state),
@@ -285,11 +298,21 @@ fn steady<const N: usize>(
             change(m).max(before)
         };
         let one = change(1);
-        if one < o.tolerance {
+        if one < tolerance {
+            return done(&cursor.z, Some(1), n, one);
+        }
+        (least, stale) = if one < 0.5 * least {
+            (one, 0)
+        } else {
+            (least, stale + 1)
+        };
+        // Changes that no longer fall and do not add up, near the noise of the integration: this is as steady as it gets.
+        let scatter = || (1..history.len()).all(|m| change(m) < 4.0 * one);
+        if stale >= STALE_PERIODS && one < 30.0 * noise && one < 1e-3 && scatter() {
             return done(&cursor.z, Some(1), n, one);
         }
         if let Some(m) =
-            (2..=o.max_multiple).find(|&m| twice(m) < o.tolerance && one > 100.0 * o.tolerance)
+            (2..=o.max_multiple).find(|&m| twice(m) < tolerance && one > 100.0 * tolerance)
         {
             return done(&cursor.z, Some(m), n, change(m));
         }
@@ -297,7 +320,7 @@ fn steady<const N: usize>(
             next_polish = 0.1 * one;
             let shooting = ShootingOptions {
                 integration: o.integration,
-                tolerance: o.tolerance.clamp(1e-13, 1e-3),
+                tolerance: tolerance.clamp(1e-13, 1e-3),
                 max_iterations: 6,
                 multiple: 1,
             };

@@ -13,7 +13,7 @@
 //! parametric work of `k_l` and `delta_0`), dampers take `c delta'^2`; the balance against the change of kinetic
 //! and support energy is a check of the whole integration, by four-point Gauss quadrature on every step.
 //!
-//! Tests: `tests/closed_form.rs`, `tests/energy.rs`.
+//! Tests: `tests/closed_form.rs`, `tests/convergence.rs` (energy balance), `tests/extreme.rs`.
 
 use crate::curve::Curve;
 use crate::error::{LpmError, check};

@@ -3,7 +3,7 @@
 //! As in dissertation D7.3: stepping the speed up follows one branch of the resonance curve to its end and jumps,
 //! stepping it down follows the other. Where motion is not periodic the point says so and is measured over a fixed number of periods.
 //!
-//! Tests: `tests/resonance.rs` (both directions against continuation).
+//! Tests: `tests/periodic.rs` (both directions against continuation).
 
 use crate::error::LpmError;
 use crate::model::{Model, State};

@@ -385,7 +385,7 @@ impl<'a, const N: usize> Runner<'a, N> {
             };
             let mut new_tau = if reached_end { end } else { tau + dtau };
             if let Some(cut) = cut {
-                record.dtau = cut.theta * record.dtau;
+                record.dtau *= cut.theta;
                 taken = Step::prepare(s, self.method, phase, segment, tau, record.dtau, f);
                 record.after = taken.apply(s, &cursor.z).0;
                 record.next = cut.next;
