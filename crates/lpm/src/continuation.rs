@@ -21,7 +21,9 @@ use crate::floquet::{Multiplier, Stability, multipliers, stability};
 use crate::integrate::{Method, Options, Runner};
 use crate::linear;
 use crate::model::{Model, State, with_system};
-use crate::periodic::{ShootingOptions, distance, follow, newton_matrix, period_map, resolved};
+use crate::periodic::{
+    ShootingOptions, distance, follow, newton_matrix, period_map, repeatability, resolved,
+};
 use crate::response::Sampling;
 use crate::sweep::Measure;
 use crate::system::{System, Vector};
@@ -48,7 +50,8 @@ pub struct ContinuationOptions {
     pub max_points: usize,
     /// Integration.
     pub integration: Options,
-    /// Relative residual of a point.
+    /// Relative residual aimed at. Where noise of the adaptive steps keeps Newton's method above it (unresolved ringing of
+    /// stiff supports, forces that jump), the best iterate counts as long as it is within 1000 integration tolerances.
     pub tolerance: f64,
     /// Sampling of the response at each point.
     pub sampling: Sampling,
@@ -127,6 +130,8 @@ pub struct BranchPoint {
     pub multipliers: Vec<Multiplier>,
     /// Stability.
     pub stability: Stability,
+    /// Relative residual.
+    pub residual: f64,
     /// Response over one period.
     pub measure: Measure,
 }
@@ -274,12 +279,15 @@ impl Model {
             ..ShootingOptions::default()
         };
         let orbit = self.shoot(mesh_frequency, guess, &shooting)?;
-        if orbit.residual > options.tolerance {
+        let limit = options
+            .tolerance
+            .max(30.0 * repeatability(&options.integration));
+        if orbit.residual > limit {
             return Err(LpmError::OutOfRange {
                 quantity: "residual of the first periodic solution",
                 value: orbit.residual,
                 unit: "-",
-                allowed: "below the tolerance: start elsewhere or from a steady state",
+                allowed: "below the tolerance or 1000 integration tolerances: start elsewhere or from a steady state",
             });
         }
         with_system!(self, s => trace(self, s, mesh_frequency, s.import(&orbit.state)?, options))
@@ -300,6 +308,7 @@ struct Solved<const N: usize> {
     jacobian: Vec<Vec<f64>>,
     columns: Vec<Vector<N>>,
     iterations: usize,
+    residual: f64,
 }
 
 /// End of the period map, Jacobian rows, columns of the derivative.
@@ -357,20 +366,27 @@ impl<const N: usize> Tracer<'_, N> {
     fn correct(&self, base: &Unknown<N>, tangent: &[f64], ds: f64) -> Option<Solved<N>> {
         let mut u = self.add(base, tangent, ds);
         let predicted = u;
+        let mut best: Option<Solved<N>> = None;
         for iterations in 0..=CORRECTIONS {
             if u.f.is_nan() || u.f <= 0.0 {
                 return None;
             }
             let (end, jacobian, columns) = self.linearise(&u).ok()?;
             let residual = distance(self.s, self.method, &end, &u.z);
-            if residual < self.o.tolerance {
-                u.z = follow(&self.by, &u.z, &end);
-                return Some(Solved {
-                    u,
-                    jacobian,
+            if best.as_ref().is_none_or(|b| residual < b.residual) {
+                best = Some(Solved {
+                    u: Unknown {
+                        z: follow(&self.by, &u.z, &end),
+                        f: u.f,
+                    },
+                    jacobian: jacobian.clone(),
                     columns,
                     iterations,
+                    residual,
                 });
+            }
+            if residual < self.o.tolerance {
+                break;
             }
             let mut rows = jacobian;
             rows.push(tangent.to_vec());
@@ -398,7 +414,11 @@ impl<const N: usize> Tracer<'_, N> {
                 return None;
             }
         }
-        None
+        let limit = self
+            .o
+            .tolerance
+            .max(30.0 * repeatability(&self.o.integration));
+        best.filter(|b| b.residual < limit)
     }
 
     /// Unit tangent at a solved point, on the side of `previous`.
@@ -422,6 +442,7 @@ impl<const N: usize> Tracer<'_, N> {
             mesh_frequency: p.u.f,
             state,
             stability: stability(&multipliers),
+            residual: p.residual,
             multipliers,
             measure: response.measure(),
         })
@@ -492,12 +513,13 @@ fn trace<const N: usize>(
         by: resolved(s, method),
     };
     let u = Unknown { z, f: frequency };
-    let (_, jacobian, columns) = t.linearise(&u)?;
+    let (end, jacobian, columns) = t.linearise(&u)?;
     let mut here = Solved {
         u,
         jacobian,
         columns,
         iterations: 0,
+        residual: distance(s, method, &end, &z),
     };
     let mut start = vec![0.0; t.by.len()];
     start.push(if o.upwards { 1.0 } else { -1.0 });

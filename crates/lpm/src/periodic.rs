@@ -129,8 +129,8 @@ pub struct SteadyOptions {
     /// Relative change from period to period at which the motion counts as steady (1e-12 to 0.1). Adaptive integration
     /// repeats itself to some thirty times its own tolerance: where this is less, that counts.
     pub tolerance: f64,
-    /// Periods of the excitation after which the wait ends.
-    pub max_periods: usize,
+    /// Mesh cycles after which the wait ends (whole periods of the excitation, two at least).
+    pub max_cycles: usize,
     /// Subharmonic motion is recognised up to this multiple of the excitation's period.
     pub max_multiple: usize,
     /// Finish by shooting once the change per period is below one percent, provided the orbit found is stable and near.
@@ -138,12 +138,12 @@ pub struct SteadyOptions {
 }
 
 impl Default for SteadyOptions {
-    /// Change below 1e-7, 4000 periods, subharmonics to order 8, polished.
+    /// Change below 1e-7, 20000 mesh cycles, subharmonics to order 8, polished.
     fn default() -> Self {
         Self {
             integration: Options::default(),
             tolerance: 1e-7,
-            max_periods: 4000,
+            max_cycles: 20_000,
             max_multiple: 8,
             polish: true,
         }
@@ -163,9 +163,9 @@ impl SteadyOptions {
             "between 1e-12 and 0.1",
         )?;
         check(
-            self.max_periods >= 2,
-            "periods",
-            self.max_periods as f64,
+            self.max_cycles >= 2,
+            "mesh cycles",
+            self.max_cycles as f64,
             "-",
             "at least 2",
         )?;
@@ -254,6 +254,14 @@ pub(crate) fn distance<const N: usize>(
         .fold(0.0, f64::max)
 }
 
+/// Relative change to which an integration repeats itself.
+pub(crate) fn repeatability(o: &Options) -> f64 {
+    match o.step {
+        StepControl::Adaptive { tolerance } => NOISE * tolerance,
+        StepControl::Fixed { .. } => 0.0,
+    }
+}
+
 fn steady<const N: usize>(
     s: &System<N>,
     frequency: f64,
@@ -265,10 +273,7 @@ fn steady<const N: usize>(
     let mut cursor = Cursor::new(0.0, start);
     let mut history = vec![start];
     let mut next_polish = 1e-2;
-    let noise = match o.integration.step {
-        StepControl::Adaptive { tolerance } => NOISE * tolerance,
-        StepControl::Fixed { .. } => 0.0,
-    };
+    let noise = repeatability(&o.integration);
     let tolerance = o.tolerance.max(noise);
     // Least change so far, and periods since it was last halved.
     let (mut least, mut stale) = (f64::INFINITY, 0);
@@ -280,7 +285,8 @@ fn steady<const N: usize>(
             residual,
         })
     };
-    for n in 1..=o.max_periods {
+    let max_periods = o.max_cycles.div_ceil(s.excitation().period()).max(2);
+    for n in 1..=max_periods {
         run.advance(&mut cursor, period, |_| {})?;
         history.insert(0, cursor.z);
         history.truncate(2 * o.max_multiple + 1);
@@ -336,7 +342,7 @@ fn steady<const N: usize>(
     let residual = history
         .get(1)
         .map_or(f64::INFINITY, |z| distance(s, run.method, &cursor.z, z));
-    done(&cursor.z, None, o.max_periods, residual)
+    done(&cursor.z, None, max_periods, residual)
 }
 
 /// End of the period map, with its derivative by the components `by` as columns.
