@@ -32,7 +32,7 @@
 //! | `curve`, `excitation` | periodic curves, jumps and kinks |
 //! | `model`, `system` | equations of motion, input free or prescribed, supports integrated, eliminated or rigid |
 //! | `integrate` | four methods, step control, contact events, derivative of the flow |
-//! | `periodic`, `floquet`, `continuation`, `sweep` | steady states, stability, branches |
+//! | `periodic`, `floquet`, `branch`, `continuation`, `sweep` | steady states, stability, branches |
 //! | `response`, `spectrum`, `damage`, `impulse` | what is read off |
 //! | `precision` | work-precision study |
 //! | [`analytic`] | closed forms that the tests compare with |
@@ -77,6 +77,7 @@
 //! ```
 
 pub mod analytic;
+mod branch;
 mod continuation;
 mod curve;
 mod damage;
@@ -94,7 +95,7 @@ mod spectrum;
 mod sweep;
 mod system;
 
-pub use continuation::{Branch, BranchEnd, BranchPoint, ContinuationOptions, TurningPoint};
+pub use branch::{Branch, BranchEnd, BranchPoint, ContinuationOptions, TurningPoint};
 pub use curve::{Curve, CurveRange, Interpolation};
 pub use damage::{DamageResponse, SteadyResponse};
 pub use error::LpmError;

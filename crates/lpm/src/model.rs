@@ -110,7 +110,9 @@ pub struct GearPair {
 }
 
 impl GearPair {
-    /// The nonunity pair of Table 3.2 (Table 7.2) of the dissertation, as printed. Contact ends where the elastic force vanishes.
+    /// The nonunity pair of Table 3.2 (Table 7.2) of the dissertation, as printed. Contact ends where the elastic force vanishes,
+    /// and no damper acts in flight. The dissertation's equations keep the damper in flight (only `k_l` and `delta_0` vanish there): set
+    /// `damping_when_apart` to follow them; the lower end of the range with two solutions, 1700 Hz, depends on it.
     pub fn table_3_2(input: Input) -> Self {
         let support = |base_radius, mass, inertia, torque| Gear {
             base_radius,
