@@ -31,6 +31,8 @@ pub struct Excitation {
 pub(crate) struct Segment {
     pub start: f64,
     pub end: f64,
+    /// Longest step that does not overlook what the curves do (mesh cycles).
+    pub max_step: f64,
     stiffness: (u32, u32),
     error: (u32, u32),
 }
@@ -77,11 +79,18 @@ impl Excitation {
         }
         let segments = ends
             .windows(2)
-            .map(|w| Segment {
-                start: w[0],
-                end: w[1],
-                stiffness: stiffness.pieces_of(w[0], w[1]),
-                error: error.pieces_of(w[0], w[1]),
+            .map(|w| {
+                let (start, end) = (w[0], w[1]);
+                let pieces = (stiffness.pieces_of(start, end), error.pieces_of(start, end));
+                Segment {
+                    start,
+                    end,
+                    max_step: stiffness
+                        .resolution(start, end, pieces.0)
+                        .min(error.resolution(start, end, pieces.1)),
+                    stiffness: pieces.0,
+                    error: pieces.1,
+                }
             })
             .collect();
         Ok(Self {

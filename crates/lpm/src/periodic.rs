@@ -277,6 +277,7 @@ fn steady<const N: usize>(
     let tolerance = o.tolerance.max(noise);
     // Least change so far, and periods since it was last halved.
     let (mut least, mut stale) = (f64::INFINITY, 0);
+    let mut previous = 1.0;
     let done = |state: &Vector<N>, multiple, periods, residual| {
         Ok(Steady {
             state: s.export(state),
@@ -287,6 +288,8 @@ fn steady<const N: usize>(
     };
     let max_periods = o.max_cycles.div_ceil(s.excitation().period()).max(2);
     for n in 1..=max_periods {
+        // Every period begins with the same choice of step: what is left to differ is the state.
+        cursor.h = 0.0;
         run.advance(&mut cursor, period, |_| {})?;
         history.insert(0, cursor.z);
         history.truncate(2 * o.max_multiple + 1);
@@ -322,7 +325,10 @@ fn steady<const N: usize>(
         {
             return done(&cursor.z, Some(m), n, change(m));
         }
-        if o.polish && one < next_polish {
+        // Where a period is long and damping ends the transient within it, waiting is the shorter way.
+        let ratio = one / previous;
+        previous = one;
+        if o.polish && one < next_polish && one * ratio * ratio > tolerance {
             next_polish = 0.1 * one;
             let shooting = ShootingOptions {
                 integration: o.integration,

@@ -216,3 +216,45 @@ fn invariant_energy_balance_with_contact_loss() -> Result<(), LpmError> {
     }
     Ok(())
 }
+
+#[test]
+fn invariant_narrow_features_of_a_curve_are_not_stepped_over() -> Result<(), LpmError> {
+    // A dip of stiffness over 3 of 40 points; at high speed an eighth of the natural period is half a cycle, and the nodes
+    // of such a step can all lie on the plateau.
+    let pair = GearPair::table_3_2(Input::Prescribed);
+    for at in [3usize, 11, 18, 29] {
+        let value = |i: usize| if i.abs_diff(at) <= 1 { 400e6 } else { 800e6 };
+        let k: Vec<f64> = (0..40).map(value).collect();
+        let e = Excitation::new(
+            &Curve::samples(1, &k, Interpolation::Spline)?,
+            &Curve::constant(14e-6)?,
+        )?;
+        let model = Model::new(&pair, &e, Supports::Rigid)?;
+        for f in [3750.0, 12_000.0] {
+            for method in [Method::Magnus, Method::DormandPrince, Method::Esdirk] {
+                let start = State {
+                    position: [18e-6, 0.0, 0.0],
+                    ..State::default()
+                };
+                let run = |step| {
+                    let o = Options {
+                        method: Some(method),
+                        step,
+                        ..Options::default()
+                    };
+                    model.simulate(f, &start, 3, &Sampling::default(), &o)
+                };
+                let fine = run(StepControl::Fixed { per_cycle: 2000.0 })?;
+                let r = run(StepControl::Adaptive { tolerance: 1e-8 })?;
+                let error = (r.end.position[0] - fine.end.position[0]).abs() / 18e-6;
+                let bound = r.stats.steps as f64 * 1e-8;
+                assert!(
+                    error < bound,
+                    "{} at {f} Hz, dip at {at}: {error:e} of {bound:e}",
+                    method.name()
+                );
+            }
+        }
+    }
+    Ok(())
+}

@@ -96,6 +96,18 @@ impl Curve {
         }
     }
 
+    /// Length over which the curve may change its course within the pieces `range` between `start` and `end` (mesh cycles): a
+    /// piece of a spline, a quarter of the shortest wave of a series; infinite for a single cubic. Not below 1/128: the
+    /// points of a denser table follow each other smoothly or not at all.
+    pub(crate) fn resolution(&self, start: f64, end: f64, range: (u32, u32)) -> f64 {
+        let length = match &self.repr {
+            Repr::Fourier { harmonics, .. } => 0.25 / harmonics.len().max(1) as f64,
+            Repr::Pieces { .. } if range.0 == range.1 => f64::INFINITY,
+            Repr::Pieces { .. } => (end - start) / f64::from(range.1 - range.0 + 1),
+        };
+        length.max(1.0 / 128.0)
+    }
+
     /// First and last piece of the stretch `(start, end)`, which holds no kink.
     pub(crate) fn pieces_of(&self, start: f64, end: f64) -> (u32, u32) {
         let eps = 1e-3 * (end - start).min(1e-9);

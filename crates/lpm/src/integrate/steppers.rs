@@ -109,6 +109,8 @@ pub(crate) struct Step {
     /// Step (s).
     h: f64,
     co: [Coefs; 7],
+    /// Magnus: new state and error estimate as affine maps of the state.
+    maps: [Affine; 2],
 }
 
 impl Step {
@@ -133,10 +135,16 @@ impl Step {
         for (c, &node) in co.iter_mut().zip(nodes) {
             *c = system.coefs(phase, segment, tau + node * dtau);
         }
+        let h = dtau / mesh_frequency;
+        let maps = match method {
+            Method::Magnus => magnus(h, system.mass[0], &co),
+            _ => [[[0.0; 3]; 2]; 2],
+        };
         Self {
             method,
-            h: dtau / mesh_frequency,
+            h,
             co,
+            maps,
         }
     }
 
@@ -149,6 +157,7 @@ impl Step {
     pub fn homogeneous(&self) -> Self {
         Self {
             co: self.co.map(Coefs::homogeneous),
+            maps: self.maps.map(|m| m.map(|[a, b, _]| [a, b, 0.0])),
             ..*self
         }
     }
@@ -157,7 +166,12 @@ impl Step {
     #[inline]
     pub fn apply<const N: usize>(&self, s: &System<N>, z: &Vector<N>) -> (Vector<N>, Vector<N>) {
         match self.method {
-            Method::Magnus => self.magnus(s, z),
+            Method::Magnus => {
+                let mut r = (*z, Vector::ZERO);
+                (r.0.q[0], r.0.v[0]) = image(&self.maps[0], z.q[0], z.v[0]);
+                (r.1.q[0], r.1.v[0]) = image(&self.maps[1], z.q[0], z.v[0]);
+                r
+            }
             Method::DormandPrince => self.dormand_prince(s, z),
             Method::Esdirk => self.esdirk(s, z),
             Method::Newmark => self.newmark(s, z),
@@ -249,40 +263,41 @@ impl Step {
         }
         (y, e)
     }
+}
 
-    fn magnus<const N: usize>(&self, s: &System<N>, z: &Vector<N>) -> (Vector<N>, Vector<N>) {
-        let (h, m) = (self.h, s.mass[0]);
-        let row = |c: &Coefs| [-c.k / m, -c.c / m, (c.load - c.p) / m];
-        let (r1, r2, r3) = (row(&self.co[0]), row(&self.co[1]), row(&self.co[2]));
-        let mut omega: Affine = [[0.0, h, 0.0], r2.map(|v| h * v)];
-        let mut e = Vector::ZERO;
-        if r1 != r2 || r2 != r3 {
-            let s5 = 15f64.sqrt() / 3.0 * h;
-            let mut a2: Affine = [[0.0; 3]; 2];
-            let mut a3: Affine = [[0.0; 3]; 2];
-            for i in 0..3 {
-                a2[1][i] = s5 * (r3[i] - r1[i]);
-                a3[1][i] = 10.0 / 3.0 * h * (r3[i] - 2.0 * r2[i] + r1[i]);
-            }
-            let a1 = omega;
-            let c1 = bracket(&a1, &a2);
-            let c2 = combine(&[(
-                -1.0 / 60.0,
-                &bracket(&a1, &combine(&[(2.0, &a3), (1.0, &c1)])),
-            )]);
-            let left = combine(&[(-20.0, &a1), (-1.0, &a3), (1.0, &c1)]);
-            let c3 = bracket(&left, &combine(&[(1.0, &a2), (1.0, &c2)]));
-            omega = combine(&[(1.0, &a1), (1.0 / 12.0, &a3), (1.0 / 240.0, &c3)]);
-            // Order 4 on the same nodes: a1 + a3/12 - [a1, a2]/12.
-            let d = combine(&[(1.0 / 240.0, &c3), (1.0 / 12.0, &c1)]);
-            e.q[0] = d[0][0] * z.q[0] + d[0][1] * z.v[0] + d[0][2];
-            e.v[0] = d[1][0] * z.q[0] + d[1][1] * z.v[0] + d[1][2];
-        }
-        let (x, v) = exponential(&omega, z.q[0], z.v[0]);
-        let mut y = *z;
-        (y.q[0], y.v[0]) = (x, v);
-        (y, e)
+/// The step of length `h` (s) as an affine map, and that of its error estimate.
+fn magnus(h: f64, m: f64, co: &[Coefs; 7]) -> [Affine; 2] {
+    let row = |c: &Coefs| [-c.k / m, -c.c / m, (c.load - c.p) / m];
+    let (r1, r2, r3) = (row(&co[0]), row(&co[1]), row(&co[2]));
+    let a1: Affine = [[0.0, h, 0.0], r2.map(|v| h * v)];
+    if r1 == r2 && r2 == r3 {
+        return [exponential(&a1), [[0.0; 3]; 2]];
     }
+    let s5 = 15f64.sqrt() / 3.0 * h;
+    let mut a2: Affine = [[0.0; 3]; 2];
+    let mut a3: Affine = [[0.0; 3]; 2];
+    for i in 0..3 {
+        a2[1][i] = s5 * (r3[i] - r1[i]);
+        a3[1][i] = 10.0 / 3.0 * h * (r3[i] - 2.0 * r2[i] + r1[i]);
+    }
+    let c1 = bracket(&a1, &a2);
+    let c2 = combine(&[(
+        -1.0 / 60.0,
+        &bracket(&a1, &combine(&[(2.0, &a3), (1.0, &c1)])),
+    )]);
+    let left = combine(&[(-20.0, &a1), (-1.0, &a3), (1.0, &c1)]);
+    let c3 = bracket(&left, &combine(&[(1.0, &a2), (1.0, &c2)]));
+    let omega = combine(&[(1.0, &a1), (1.0 / 12.0, &a3), (1.0 / 240.0, &c3)]);
+    // Order 4 on the same nodes: a1 + a3/12 - [a1, a2]/12.
+    let error = combine(&[(1.0 / 240.0, &c3), (1.0 / 12.0, &c1)]);
+    [exponential(&omega), error]
+}
+
+/// `A z + b` for `map = [A b]`.
+#[inline]
+fn image(map: &Affine, x: f64, v: f64) -> (f64, f64) {
+    let [[a, b, f], [c, d, g]] = *map;
+    (a * x + b * v + f, c * x + d * v + g)
 }
 
 /// `[A b]`: the generator of `z' = A z + b` in two dimensions.
@@ -314,8 +329,8 @@ fn bracket(a: &Affine, b: &Affine) -> Affine {
     combine(&[(1.0, &product(a, b)), (-1.0, &product(b, a))])
 }
 
-/// `exp(B) z + phi_1(B) b` for `omega = [B b]`.
-fn exponential(omega: &Affine, x: f64, v: f64) -> (f64, f64) {
+/// `[exp(B), phi_1(B) b]` for `omega = [B b]`.
+fn exponential(omega: &Affine) -> Affine {
     let [[a, b, f], [c, d, g]] = *omega;
     let det = a * d - b * c;
     let half = 0.5 * (a + d);
@@ -342,9 +357,9 @@ fn exponential(omega: &Affine, x: f64, v: f64) -> (f64, f64) {
         grow * si * c,
         grow * (co - si * dev),
     );
-    let (mut x1, mut v1) = (e11 * x + e12 * v, e21 * x + e22 * v);
+    let (mut x1, mut v1) = (0.0, 0.0);
     if f == 0.0 && g == 0.0 {
-        return (x1, v1);
+        return [[e11, e12, x1], [e21, e22, v1]];
     }
     // Size of the exponent in units in which displacement and velocity are alike.
     let size = disc.abs().sqrt() + half.abs();
@@ -372,18 +387,15 @@ fn exponential(omega: &Affine, x: f64, v: f64) -> (f64, f64) {
         // phi_1 over twice the interval: s(2t) = exp(B t) s(t) + s(t).
         let mut scale = t;
         for _ in 0..halvings {
-            let (ex, ev) = exponential(
-                &[[a * scale, b * scale, 0.0], [c * scale, d * scale, 0.0]],
-                sp,
-                sq,
-            );
+            let e = exponential(&[[a * scale, b * scale, 0.0], [c * scale, d * scale, 0.0]]);
+            let (ex, ev) = image(&e, sp, sq);
             (sp, sq) = (sp + ex, sq + ev);
             scale *= 2.0;
         }
         x1 += sp;
         v1 += sq;
     }
-    (x1, v1)
+    [[e11, e12, x1], [e21, e22, v1]]
 }
 
 #[cfg(test)]
@@ -464,7 +476,7 @@ mod tests {
                 ];
                 sum = [sum[0] + t[0], sum[1] + t[1]];
             }
-            let (x, v) = exponential(o, x0, v0);
+            let (x, v) = image(&exponential(o), x0, v0);
             let tol = 1e-13 * (1.0 + sum[0].abs().max(sum[1].abs()));
             assert!(
                 (x - sum[0]).abs() < tol && (v - sum[1]).abs() < tol,
