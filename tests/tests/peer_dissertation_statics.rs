@@ -16,7 +16,10 @@ fn load(name: &str) -> SpurPairCase {
 fn solve(case: &SpurPairCase, count: u32, torques: Vec<f64>) -> Vec<Vec<PositionResult>> {
     let model = PairModel::new(&case.pair, &case.options).unwrap();
     let mesh_cycles = (0..count).map(|k| f64::from(k) / f64::from(count)).collect();
-    let results = model.solve(&StaticsRequest { mesh_cycles, torques, stiffness_difference: false, keep_pressure: false }, &()).unwrap().results;
+    let results = model
+        .solve(&StaticsRequest { mesh_cycles, torques, stiffness_difference: false, keep_pressure: false }, &())
+        .unwrap()
+        .results;
     assert!(results.iter().flatten().all(|r| r.status == PositionStatus::Converged));
     results
 }
@@ -35,7 +38,8 @@ fn contact_ratio(results: &[PositionResult]) -> f64 {
 
 /// Local stiffness (N/um) in the middle of the stretch where `pairs` pairs carry load.
 fn stiffness_with(results: &[PositionResult], pairs: usize) -> f64 {
-    let mut values: Vec<f64> = results.iter().filter(|r| r.loaded_pairs().count() == pairs).filter_map(|r| r.stiffness_local_slope).collect();
+    let mut values: Vec<f64> =
+        results.iter().filter(|r| r.loaded_pairs().count() == pairs).filter_map(|r| r.stiffness_local_slope).collect();
     values.sort_by(f64::total_cmp);
     values[values.len() / 2] * 1e-6
 }
@@ -59,7 +63,8 @@ fn peer_dissertation_nonunity_pair_solid_lies_between_the_plane_states() {
     let mut case = load("nonunity-pair.toml");
     let mut pinion = case.pair.pinion().spec().clone();
     pinion.facewidth = case.pair.wheel().facewidth();
-    case.pair = GearPair::new(Gear::new(&pinion).unwrap(), case.pair.wheel().clone(), case.pair.centre_distance()).unwrap();
+    case.pair =
+        GearPair::new(Gear::new(&pinion).unwrap(), case.pair.wheel().clone(), case.pair.centre_distance()).unwrap();
     let largest = |case: &SpurPairCase| most(&solve(case, 20, vec![424.0])[0], |r| r.static_transmission_error) * 1e6;
     let solid = largest(&case);
     case.options.face = fecm::FaceModel::PlaneStress;
@@ -67,7 +72,12 @@ fn peer_dissertation_nonunity_pair_solid_lies_between_the_plane_states() {
     case.options.face = fecm::FaceModel::PlaneStrain;
     let strain = largest(&case);
     assert!(strain < solid && solid < stress, "{strain} {solid} {stress}");
-    within(contact_ratio(&solve(&load("nonunity-pair.toml"), 100, vec![424.0])[0]), 1.64, 0.03, "contact ratio under load");
+    within(
+        contact_ratio(&solve(&load("nonunity-pair.toml"), 100, vec![424.0])[0]),
+        1.64,
+        0.03,
+        "contact ratio under load",
+    );
 }
 
 /// D2.2: largest tooth force 2.8 kN; tooth i enters near 0.88 and tooth i-1 leaves near 1.62.

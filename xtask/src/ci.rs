@@ -19,7 +19,8 @@ pub fn run(full: bool) -> anyhow::Result<()> {
 
 fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> anyhow::Result<()> {
     println!("cargo {}", arguments.join(" "));
-    let status = Command::new(env!("CARGO")).args(arguments).envs(environment.iter().copied()).status().context("cargo")?;
+    let status =
+        Command::new(env!("CARGO")).args(arguments).envs(environment.iter().copied()).status().context("cargo")?;
     ensure!(status.success(), "cargo {} failed", arguments.join(" "));
     Ok(())
 }

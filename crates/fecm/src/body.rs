@@ -22,7 +22,7 @@ use crate::condense::CondensedBody;
 use crate::element::ReferenceQuad;
 use crate::error::FecmError;
 use crate::face::{FaceBasis, FaceModel, Parity};
-use crate::linalg::{add_scaled, column_slice, column_slice_mut, add_product, product, symmetrise};
+use crate::linalg::{add_product, add_scaled, column_slice, column_slice_mut, product, symmetrise};
 use crate::material::Material;
 use crate::mesh::{MeshDensity, SectorMesh};
 use crate::ring::{Arc, cyclic_cut_compliance};
@@ -196,11 +196,7 @@ impl GearBody {
         let forward = breaks[last] > breaks[0];
         let (low, high) = if forward { (breaks[0], breaks[last]) } else { (breaks[last], breaks[0]) };
         let arc = arc.clamp(low, high);
-        let after = if forward {
-            breaks.partition_point(|&b| b <= arc)
-        } else {
-            breaks.partition_point(|&b| b >= arc)
-        };
+        let after = if forward { breaks.partition_point(|&b| b <= arc) } else { breaks.partition_point(|&b| b >= arc) };
         let index = after.clamp(1, last) - 1;
         let xi = 2.0 * (arc - breaks[index]) / (breaks[index + 1] - breaks[index]) - 1.0;
         let n = self.quad.order() + 1;
@@ -432,13 +428,7 @@ impl GearBody {
     /// Normal displacement of the flank at `observed` stations of tooth `t + offset` by unit normal loads at the `loaded` stations of
     /// tooth `t` (m/N). Zero beyond the reach.
     #[must_use]
-    pub fn cross_compliance(
-        &self,
-        family: usize,
-        offset: i32,
-        observed: &[Station],
-        loaded: &[Station],
-    ) -> Mat<f64> {
+    pub fn cross_compliance(&self, family: usize, offset: i32, observed: &[Station], loaded: &[Station]) -> Mat<f64> {
         let family = &self.families[family];
         let functions = family.basis.plane_degrees().len();
         match family.cross.get((offset.unsigned_abs() as usize).wrapping_sub(1)) {

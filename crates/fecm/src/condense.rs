@@ -256,9 +256,8 @@ impl Assembly<'_> {
                     for (a, dof) in basis.dofs().iter().enumerate() {
                         for (b, other) in basis.dofs().iter().enumerate() {
                             if dof.component == other.component {
-                                values[b * self.block + a] = stiffness
-                                    * mass[i * n + j]
-                                    * basis.integrals(dof.degree, other.degree).value_value;
+                                values[b * self.block + a] =
+                                    stiffness * mass[i * n + j] * basis.integrals(dof.degree, other.degree).value_value;
                             }
                         }
                     }

@@ -8,11 +8,11 @@
 //! with `Psi` the functions along the face at the cells, `U_FE` the finite-element compliance between stations
 //! ([`crate::body`]) and the near field of [`crate::nearfield`]. It is symmetric by construction.
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 
 use crate::body::{GearBody, Station};
 use crate::error::FecmError;
-use crate::linalg::{add_block, add_product, column_slice, column_slice_mut, product};
+use crate::linalg::{add_block, add_product, column_slice, column_slice_mut};
 use crate::nearfield::{FaceCells, NearField};
 use crate::search::{Member, NoCell, OpposedPoints, PlacedPair};
 
@@ -105,6 +105,15 @@ impl PairGrid {
 }
 
 impl ContactGrid {
+    /// Whether the cells are those of another grid, row by row; their gaps may differ.
+    #[must_use]
+    pub fn has_the_cells_of(&self, other: &Self) -> bool {
+        let rows = |pair: &PairGrid| (pair.pair, pair.first_row, pair.rows.len(), pair.pinion_is_master());
+        self.cell == other.cell
+            && self.face == other.face
+            && self.pairs.iter().map(rows).eq(other.pairs.iter().map(rows))
+    }
+
     /// Number of cells.
     #[must_use]
     pub fn size(&self) -> usize {
@@ -150,6 +159,7 @@ impl ContactGrid {
             for (family_index, family) in body.families.iter().enumerate() {
                 let functions = family.basis.plane_degrees().len();
                 let values: Vec<Vec<f64>> = self.face.centres.iter().map(|&z| family.basis.plane_values(z)).collect();
+                let psi = Mat::from_fn(count, functions, |j, k| values[j][k]);
                 for (i, observed) in self.pairs.iter().enumerate() {
                     for (j, loaded) in self.pairs.iter().enumerate().skip(i) {
                         let mut modal = if i == j {
@@ -161,8 +171,7 @@ impl ContactGrid {
                         if i == j {
                             subtract_depth(&mut modal, functions, |d| near.depth(index, family_index, d));
                         }
-                        let expanded = expand(&modal, &values, functions);
-                        add_block(&mut total, starts[i] * count, starts[j] * count, 1.0, &expanded);
+                        add_expanded(&mut total, [starts[i] * count, starts[j] * count], &modal, psi.as_ref(), i == j);
                     }
                 }
             }
@@ -214,29 +223,48 @@ fn subtract_depth<'a>(modal: &mut Mat<f64>, functions: usize, depth: impl Fn(usi
     }
 }
 
-/// From functions along the face to cells: `(I x Psi) modal (I x Psi)^T`.
-fn expand(modal: &Mat<f64>, values: &[Vec<f64>], functions: usize) -> Mat<f64> {
-    let psi = Mat::from_fn(values.len(), functions, |j, k| values[j][k]);
+/// Adds `(I x Psi) modal (I x Psi)^T`, functions along the face turned into cells, at `at`; of a diagonal block only what lies on or above
+/// the diagonal, row by row of cells.
+fn add_expanded(total: &mut Mat<f64>, at: [usize; 2], modal: &Mat<f64>, psi: MatRef<'_, f64>, is_diagonal: bool) {
+    let (count, functions) = (psi.nrows(), psi.ncols());
     let (rows, columns) = (modal.nrows() / functions, modal.ncols() / functions);
-    let count = values.len();
     let mut half = Mat::zeros(rows * count, modal.ncols());
     for i in 0..rows {
         let source = modal.as_ref().submatrix(i * functions, 0, functions, modal.ncols());
         let target = half.as_mut().submatrix_mut(i * count, 0, count, modal.ncols());
-        add_product(target, 1.0, psi.as_ref(), source);
+        add_product(target, 1.0, psi, source);
     }
-    let mut result = Mat::zeros(rows * count, columns * count);
     for j in 0..columns {
-        let source = half.as_ref().submatrix(0, j * functions, rows * count, functions);
-        let block = product(source, psi.transpose());
-        result.as_mut().submatrix_mut(0, j * count, rows * count, count).copy_from(&block);
+        let height = if is_diagonal { (j + 1) * count } else { rows * count };
+        let source = half.as_ref().submatrix(0, j * functions, height, functions);
+        let target = total.as_mut().submatrix_mut(at[0], at[1] + j * count, height, count);
+        add_product(target, 1.0, source, psi.transpose());
     }
-    result
 }
 
+/// Copies the upper triangle to the lower, tile by tile so that both stay in cache.
 fn mirror_upper(matrix: &mut Mat<f64>) {
-    let upper = matrix.transpose().to_owned();
-    for j in 0..matrix.ncols() {
-        column_slice_mut(matrix, j)[j + 1..].copy_from_slice(&column_slice(&upper, j)[j + 1..]);
+    const TILE: usize = 32;
+    let n = matrix.nrows();
+    let mut tile = [0.0; TILE * TILE];
+    for left in (0..n).step_by(TILE) {
+        let width = TILE.min(n - left);
+        for top in (0..=left).step_by(TILE) {
+            let height = TILE.min(n - top);
+            for j in 0..width {
+                let column = &column_slice(matrix, left + j)[top..top + height];
+                for (i, value) in column.iter().enumerate() {
+                    tile[i * TILE + j] = *value;
+                }
+            }
+            for i in 0..height {
+                // row `top + i` of the upper triangle is column `top + i` of the lower
+                let first = if top == left { i + 1 } else { 0 };
+                let target = column_slice_mut(matrix, top + i);
+                if first < width {
+                    target[left + first..left + width].copy_from_slice(&tile[i * TILE + first..i * TILE + width]);
+                }
+            }
+        }
     }
 }

@@ -55,7 +55,9 @@ pub enum FecmError {
     #[error(transparent)]
     Contact(#[from] crate::lcp::LcpError),
     /// A material point was not found in the mesh.
-    #[error("no element of the {body} mesh holds the point ({x:.6} m, {y:.6} m) at depth {depth:.3e} m below the flank")]
+    #[error(
+        "no element of the {body} mesh holds the point ({x:.6} m, {y:.6} m) at depth {depth:.3e} m below the flank"
+    )]
     PointOutsideMesh {
         /// Which body.
         body: &'static str,

@@ -64,6 +64,6 @@ pub use lcp::SolverKind;
 pub use material::Material;
 pub use mesh::MeshDensity;
 pub use statics::{
-    ContactOptions, MemberOptions, Observer, PairModel, PairModelOptions, PositionResult, PositionStatus, StaticsRequest,
-    StaticsSeries,
+    ContactOptions, MemberOptions, Observer, PairModel, PairModelOptions, PositionResult, PositionStatus,
+    StaticsRequest, StaticsSeries,
 };

@@ -44,6 +44,22 @@ pub fn column_slice_mut(a: &mut Mat<f64>, column: usize) -> &mut [f64] {
     a.col_as_slice_mut(column)
 }
 
+/// Lower triangle of the rows and columns of a symmetric matrix with the given indices; zero above.
+#[must_use]
+pub fn lower_triangle(a: MatRef<'_, f64>, indices: &[usize]) -> Mat<f64> {
+    let mut part = Mat::zeros(indices.len(), indices.len());
+    for (j, &column) in indices.iter().enumerate() {
+        let source = a.col(column).try_as_col_major();
+        for (target, &row) in part.col_as_slice_mut(j).iter_mut().zip(indices).skip(j) {
+            *target = match source {
+                Some(source) => source.as_slice()[row],
+                None => a[(row, column)],
+            };
+        }
+    }
+    part
+}
+
 /// `y += alpha * x`.
 pub fn add_scaled(y: &mut [f64], alpha: f64, x: &[f64]) {
     for (y, x) in y.iter_mut().zip(x) {
@@ -82,9 +98,8 @@ impl DenseCholesky {
     pub fn new(mut a: Mat<f64>, what: &'static str) -> Result<Self, FecmError> {
         let n = a.nrows();
         let params = Default::default();
-        let mut memory = MemBuffer::new(
-            faer::linalg::cholesky::llt::factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, params),
-        );
+        let mut memory =
+            MemBuffer::new(faer::linalg::cholesky::llt::factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, params));
         faer::linalg::cholesky::llt::factor::cholesky_in_place(
             a.as_mut(),
             Default::default(),
@@ -99,9 +114,8 @@ impl DenseCholesky {
     /// Solves in place for every column of `rhs`.
     pub fn solve_in_place(&self, rhs: MatMut<'_, f64>) {
         let n = self.factor.nrows();
-        let mut memory = MemBuffer::new(
-            faer::linalg::cholesky::llt::solve::solve_in_place_scratch::<f64>(n, rhs.ncols(), Par::Seq),
-        );
+        let mut memory =
+            MemBuffer::new(faer::linalg::cholesky::llt::solve::solve_in_place_scratch::<f64>(n, rhs.ncols(), Par::Seq));
         faer::linalg::cholesky::llt::solve::solve_in_place(
             self.factor.as_ref(),
             rhs,
@@ -134,11 +148,7 @@ pub struct BlockMatrix {
 impl BlockMatrix {
     /// An all-zero matrix whose graph joins the nodes of each element; `u32::MAX` marks a node left out.
     #[must_use]
-    pub fn from_elements<'a>(
-        node_count: usize,
-        block: usize,
-        elements: impl Iterator<Item = &'a [u32]>,
-    ) -> Self {
+    pub fn from_elements<'a>(node_count: usize, block: usize, elements: impl Iterator<Item = &'a [u32]>) -> Self {
         let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); node_count];
         for element in elements {
             for &column in element.iter().filter(|&&n| n != u32::MAX) {
@@ -190,9 +200,8 @@ impl BlockMatrix {
         .map_err(oom)?;
         let mut factor = vec![0.0; symbolic.len_val()];
         let params = Default::default();
-        let mut memory =
-            MemBuffer::try_new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, params))
-                .map_err(|_| FecmError::OutOfMemory { what, size })?;
+        let mut memory = MemBuffer::try_new(symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, params))
+            .map_err(|_| FecmError::OutOfMemory { what, size })?;
         symbolic
             .factorize_numeric_llt(
                 &mut factor,

@@ -151,19 +151,14 @@ fn plane_depth(model: FaceModel, body: &NearBody, basis: &FaceBasis, x: f64, cel
     Mat::from_fn(1, 1, |_, _| value)
 }
 
-fn solid_surface(
-    bodies: &[NearBody; 2],
-    x: f64,
-    cell: f64,
-    face: &FaceCells,
-    edge_correction: bool,
-) -> Mat<f64> {
+fn solid_surface(bodies: &[NearBody; 2], x: f64, cell: f64, face: &FaceCells, edge_correction: bool) -> Mat<f64> {
     let count = face.centres.len();
     let at = |body: &NearBody, z: f64, depth: f64| {
         rectangle_displacement(&body.material, 0.5 * cell, 0.5 * face.width, x, z, depth)
     };
     // one table over the distances that occur on the uniform grid
-    let direct: Vec<f64> = (0..2 * count).map(|k| bodies.iter().map(|b| at(b, k as f64 * face.width, 0.0)).sum()).collect();
+    let direct: Vec<f64> =
+        (0..2 * count).map(|k| bodies.iter().map(|b| at(b, k as f64 * face.width, 0.0)).sum()).collect();
     Mat::from_fn(count, count, |i, j| {
         let mut value = direct[i.abs_diff(j)];
         if face.mirrored {
@@ -179,13 +174,7 @@ fn solid_surface(
 }
 
 /// Local difference of the loads mirrored at the free ends of a body's face.
-fn edge_part(
-    body: &NearBody,
-    face: &FaceCells,
-    i: usize,
-    j: usize,
-    at: &impl Fn(&NearBody, f64, f64) -> f64,
-) -> f64 {
+fn edge_part(body: &NearBody, face: &FaceCells, i: usize, j: usize, at: &impl Fn(&NearBody, f64, f64) -> f64) -> f64 {
     let width = body.bases.first().map_or(0.0, |basis| basis.width());
     let (z, source) = (face.centres[i], face.centres[j]);
     let ends: &[f64] = if face.mirrored { &[0.5] } else { &[0.5, -0.5] };

@@ -2,7 +2,9 @@
 //! (K. L. Johnson, *Contact Mechanics*, 1985). Two equal bodies of steel; one of them rigid for the punches.
 
 use faer::Mat;
-use fecm::analytic::{circular_punch_indentation, flat_punch_pressure, hertz_line, hertz_point, line_contact_compression};
+use fecm::analytic::{
+    circular_punch_indentation, flat_punch_pressure, hertz_line, hertz_point, line_contact_compression,
+};
 use fecm::halfspace::{rectangle_displacement, strip_displacement};
 use fecm::lcp::{ContactProblem, ContactSolution, SolverKind, solve_contact};
 use fecm::{FecmError, Material};
@@ -36,7 +38,10 @@ fn analytic_hertz_line_contact() {
     let exact = hertz_line(load, radius, modulus);
     let cell = exact.half_width / 10.0;
     let x: Vec<f64> = (-16..=16).map(|k| f64::from(k) * cell).collect();
-    let influence = |d: f64| 2.0 * (strip_displacement(&STEEL, true, 0.5 * cell, d, 0.0) - strip_displacement(&STEEL, true, 0.5 * cell, d, depth));
+    let influence = |d: f64| {
+        2.0 * (strip_displacement(&STEEL, true, 0.5 * cell, d, 0.0)
+            - strip_displacement(&STEEL, true, 0.5 * cell, d, depth))
+    };
     let compliance = Mat::from_fn(x.len(), x.len(), |i, j| influence(x[i] - x[j]));
     let gap: Vec<f64> = x.iter().map(|x| x * x / (2.0 * radius)).collect();
     let solution = solve(&compliance, &gap, load).unwrap();
@@ -45,7 +50,8 @@ fn analytic_hertz_line_contact() {
     assert!((width / exact.half_width - 1.0).abs() < 0.01, "half width {width} against {}", exact.half_width);
     assert!((peak / exact.peak_pressure - 1.0).abs() < 0.01, "peak {peak} against {}", exact.peak_pressure);
     // the formula takes the depth as much larger than the contact; here their ratio is some 10
-    let approach = 2.0 * line_contact_compression(load, STEEL.young_modulus, STEEL.poisson_ratio, exact.half_width, depth);
+    let approach =
+        2.0 * line_contact_compression(load, STEEL.young_modulus, STEEL.poisson_ratio, exact.half_width, depth);
     assert!((solution.approach / approach - 1.0).abs() < 0.005, "approach {} against {approach}", solution.approach);
 }
 
@@ -59,7 +65,10 @@ fn order_hertz_line_contact_converges_with_the_cell() {
         let cell = exact.half_width / f64::from(cells);
         let reach = cells * 3 / 2;
         let x: Vec<f64> = (-reach..=reach).map(|k| f64::from(k) * cell).collect();
-        let influence = |d: f64| 2.0 * (strip_displacement(&STEEL, true, 0.5 * cell, d, 0.0) - strip_displacement(&STEEL, true, 0.5 * cell, d, depth));
+        let influence = |d: f64| {
+            2.0 * (strip_displacement(&STEEL, true, 0.5 * cell, d, 0.0)
+                - strip_displacement(&STEEL, true, 0.5 * cell, d, depth))
+        };
         let compliance = Mat::from_fn(x.len(), x.len(), |i, j| influence(x[i] - x[j]));
         let gap: Vec<f64> = x.iter().map(|x| x * x / (2.0 * radius)).collect();
         let solution = solve(&compliance, &gap, load).unwrap();
@@ -85,9 +94,18 @@ fn analytic_hertz_point_contact() {
     let exact = hertz_point(load, radius, modulus);
     const REACH: i32 = 14;
     let cell = exact.radius / 10.0;
-    let places: Vec<(f64, f64)> = (-REACH..=REACH).flat_map(|i| (-REACH..=REACH).map(move |j| (f64::from(i) * cell, f64::from(j) * cell))).collect();
+    let places: Vec<(f64, f64)> = (-REACH..=REACH)
+        .flat_map(|i| (-REACH..=REACH).map(move |j| (f64::from(i) * cell, f64::from(j) * cell)))
+        .collect();
     let compliance = Mat::from_fn(places.len(), places.len(), |i, j| {
-        2.0 * rectangle_displacement(&STEEL, 0.5 * cell, 0.5 * cell, places[i].0 - places[j].0, places[i].1 - places[j].1, 0.0)
+        2.0 * rectangle_displacement(
+            &STEEL,
+            0.5 * cell,
+            0.5 * cell,
+            places[i].0 - places[j].0,
+            places[i].1 - places[j].1,
+            0.0,
+        )
     });
     let gap: Vec<f64> = places.iter().map(|(x, y)| (x * x + y * y) / (2.0 * radius)).collect();
     let solution = solve(&compliance, &gap, load).unwrap();
@@ -98,7 +116,12 @@ fn analytic_hertz_point_contact() {
     let peak = solution.forces[places.len() / 2] / (cell * cell);
     assert!((width / exact.radius - 1.0).abs() < 0.01, "radius {width} against {}", exact.radius);
     assert!((peak / exact.peak_pressure - 1.0).abs() < 0.01, "peak {peak} against {}", exact.peak_pressure);
-    assert!((solution.approach / exact.approach - 1.0).abs() < 0.005, "approach {} against {}", solution.approach, exact.approach);
+    assert!(
+        (solution.approach / exact.approach - 1.0).abs() < 0.005,
+        "approach {} against {}",
+        solution.approach,
+        exact.approach
+    );
 }
 
 #[test]
@@ -107,7 +130,9 @@ fn analytic_flat_punch_in_plane() {
     const CELLS: usize = 160;
     let cell = 2.0 * a / CELLS as f64;
     let x: Vec<f64> = (0..CELLS).map(|k| (k as f64 + 0.5) * cell - a).collect();
-    let influence = |d: f64| strip_displacement(&STEEL, true, 0.5 * cell, d, 0.0) - strip_displacement(&STEEL, true, 0.5 * cell, d, depth);
+    let influence = |d: f64| {
+        strip_displacement(&STEEL, true, 0.5 * cell, d, 0.0) - strip_displacement(&STEEL, true, 0.5 * cell, d, depth)
+    };
     let compliance = Mat::from_fn(CELLS, CELLS, |i, j| influence(x[i] - x[j]));
     let solution = solve(&compliance, &[0.0; CELLS], load).unwrap();
     // inside 80 % of the punch: the pressure at its edge is infinite
@@ -127,7 +152,14 @@ fn analytic_circular_punch() {
         .filter(|(x, y)| x.hypot(*y) <= a)
         .collect();
     let compliance = Mat::from_fn(places.len(), places.len(), |i, j| {
-        rectangle_displacement(&STEEL, 0.5 * cell, 0.5 * cell, places[i].0 - places[j].0, places[i].1 - places[j].1, 0.0)
+        rectangle_displacement(
+            &STEEL,
+            0.5 * cell,
+            0.5 * cell,
+            places[i].0 - places[j].0,
+            places[i].1 - places[j].1,
+            0.0,
+        )
     });
     let solution = solve(&compliance, &vec![0.0; places.len()], load).unwrap();
     // the staircase of square cells has the area of a circle of this radius

@@ -256,7 +256,9 @@ fn analytic_cantilever_with_parabolic_end_shear() {
         let u = -force * y / (6.0 * e * inertia)
             * ((6.0 * length - 3.0 * x) * x + (2.0 + nu) * (y * y - 0.25 * depth * depth));
         let v = force / (6.0 * e * inertia)
-            * (3.0 * nu * y * y * (length - x) + (4.0 + 5.0 * nu) * 0.25 * depth * depth * x + (3.0 * length - x) * x * x);
+            * (3.0 * nu * y * y * (length - x)
+                + (4.0 + 5.0 * nu) * 0.25 * depth * depth * x
+                + (3.0 * length - x) * x * x);
         vec![u, v]
     };
     let block = mapped_block(3, 4, 2, |u, v| Point2::new(length * u, depth * (v - 0.5)));

@@ -46,7 +46,9 @@ fn peer_timoshenko_settlement_of_rectangles() {
     let square = rectangle_displacement(&STEEL, 1e-3, 1e-3, 0.0, 0.0, 0.0) * e * 2e-3 / (1.0 - nu * nu);
     assert!((square / (4.0 / PI * (1.0 + 2.0_f64.sqrt()).ln()) - 1.0).abs() < 1e-12);
     let width = 2e-3;
-    for (ratio, centre, corner) in [(1.0, 1.12, 0.56), (1.5, 1.36, 0.68), (2.0, 1.53, 0.77), (5.0, 2.10, 1.05), (10.0, 2.54, 1.27)] {
+    for (ratio, centre, corner) in
+        [(1.0, 1.12, 0.56), (1.5, 1.36, 0.68), (2.0, 1.53, 0.77), (5.0, 2.10, 1.05), (10.0, 2.54, 1.27)]
+    {
         let length = ratio * width;
         // per unit force: q = 1 / (L B)
         let unit = (1.0 - nu * nu) / (e * length);

@@ -1,7 +1,7 @@
 //! Extreme geometry and load: every case ends in a converged answer with small residuals, or in a typed error that says why.
 
-use fecm::statics::{PairModel, PairModelOptions, PositionStatus, StaticsRequest};
 use fecm::FaceModel;
+use fecm::statics::{PairModel, PairModelOptions, PositionStatus, StaticsRequest};
 use gear_geom::{FilletSpec, Gear, GearKind, GearPair, GearSpec, ToothThickness};
 
 #[derive(Debug, Clone, Copy)]
@@ -69,7 +69,8 @@ fn solve_and_check(pair: &GearPair, face: FaceModel, torque: f64, name: &str) {
     options.contact.face_cells = 12;
     let model = PairModel::new(pair, &options).unwrap_or_else(|e| panic!("{name}: {e}"));
     let mesh_cycles = vec![0.0, 0.2, 0.4, 0.6, 0.8];
-    let request = StaticsRequest { mesh_cycles, torques: vec![torque], stiffness_difference: false, keep_pressure: true };
+    let request =
+        StaticsRequest { mesh_cycles, torques: vec![torque], stiffness_difference: false, keep_pressure: true };
     for at in &model.solve(&request, &()).unwrap_or_else(|e| panic!("{name}: {e}")).results[0] {
         let place = format!("{name} at {}: {:?}", at.mesh_cycle, at.status);
         let usable = matches!(at.status, PositionStatus::Converged | PositionStatus::FilletContact);
@@ -80,7 +81,10 @@ fn solve_and_check(pair: &GearPair, face: FaceModel, torque: f64, name: &str) {
             let stiffness = at.stiffness_local_slope.unwrap_or_else(|| panic!("{place}: no stiffness"));
             assert!(stiffness > 0.0 && stiffness.is_finite(), "{place}: stiffness {stiffness}");
             assert!(at.loaded_pairs().count() > 0, "{place}");
-            assert!(at.patches.iter().flat_map(|p| p.pressure.iter().flatten()).all(|p| p.is_finite() && *p >= 0.0), "{place}");
+            assert!(
+                at.patches.iter().flat_map(|p| p.pressure.iter().flatten()).all(|p| p.is_finite() && *p >= 0.0),
+                "{place}"
+            );
         }
     }
 }
@@ -117,8 +121,15 @@ fn extreme_torque() {
     for torque in [1e3, 1e6] {
         let case = Case { torque, ..USUAL };
         let pair = GearPair::new(case.gear(25).unwrap(), case.gear(31).unwrap(), 168e-3).unwrap();
-        let model = PairModel::new(&pair, &PairModelOptions { face: FaceModel::PlaneStrain, ..PairModelOptions::default() }).unwrap();
-        let request = StaticsRequest { mesh_cycles: vec![0.0, 0.5], torques: vec![case.wheel_torque(&pair)], stiffness_difference: true, keep_pressure: true };
+        let model =
+            PairModel::new(&pair, &PairModelOptions { face: FaceModel::PlaneStrain, ..PairModelOptions::default() })
+                .unwrap();
+        let request = StaticsRequest {
+            mesh_cycles: vec![0.0, 0.5],
+            torques: vec![case.wheel_torque(&pair)],
+            stiffness_difference: true,
+            keep_pressure: true,
+        };
         for at in &model.solve(&request, &()).unwrap().results[0] {
             assert_eq!(at.status, PositionStatus::Overloaded);
             assert!(at.static_transmission_error.is_finite() && at.peak_pressure().is_finite());
@@ -181,7 +192,12 @@ fn extreme_internal_gears() {
         .unwrap();
         let pair = GearPair::new(pinion, ring, radius(ring_teeth) - radius(pinion_teeth)).unwrap();
         for face in [FaceModel::PlaneStress, FaceModel::Solid { order: 4 }] {
-            solve_and_check(&pair, face, 2e4 * 20e-3 * 3.0 * radius(ring_teeth), &format!("{pinion_teeth}/{ring_teeth} internal {face:?}"));
+            solve_and_check(
+                &pair,
+                face,
+                2e4 * 20e-3 * 3.0 * radius(ring_teeth),
+                &format!("{pinion_teeth}/{ring_teeth} internal {face:?}"),
+            );
         }
     }
 }

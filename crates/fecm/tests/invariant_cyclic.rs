@@ -12,7 +12,14 @@ use gear_geom::{FlankSide, Gear, GearSpec};
 use nalgebra::{Point2, Rotation2, Vector2};
 
 fn gear() -> Gear {
-    Gear::new(&GearSpec { teeth: 17, tip_radius: 57e-3, root_radius: 43.5e-3, rim_radius: 25e-3, ..GearSpec::default() }).unwrap()
+    Gear::new(&GearSpec {
+        teeth: 17,
+        tip_radius: 57e-3,
+        root_radius: 43.5e-3,
+        rim_radius: 25e-3,
+        ..GearSpec::default()
+    })
+    .unwrap()
 }
 
 /// All sectors as one mesh: nodes `(sector, node) -> number`, nodes on shared cuts merged.
@@ -35,8 +42,9 @@ fn full_ring(sector: &SectorMesh, teeth: usize) -> (PlaneMesh, impl Fn(usize, u3
             numbers[tooth][upper as usize] = numbers[(tooth + 1) % teeth][lower as usize];
         }
     }
-    let connectivity =
-        (0..teeth).flat_map(|t| sector.mesh.connectivity.iter().map(|&n| numbers[t][n as usize]).collect::<Vec<_>>()).collect();
+    let connectivity = (0..teeth)
+        .flat_map(|t| sector.mesh.connectivity.iter().map(|&n| numbers[t][n as usize]).collect::<Vec<_>>())
+        .collect();
     (PlaneMesh { order: sector.mesh.order, nodes, connectivity }, move |tooth, node| numbers[tooth][node as usize])
 }
 
@@ -53,12 +61,19 @@ fn invariant_cyclic_condensation_equals_the_full_gear() {
         (FaceModel::PlaneStrain, BoreCondition::ElasticHub { stiffness: 3e13 }, Some(3e13)),
         (FaceModel::Solid { order: 3 }, BoreCondition::RigidHub, None),
     ] {
-        let body = GearBody::new(&gear, FlankSide::Upper, &Material::STEEL, &options(face, bore, mesh), "gear").unwrap();
+        let body =
+            GearBody::new(&gear, FlankSide::Upper, &Material::STEEL, &options(face, bore, mesh), "gear").unwrap();
         let teeth = gear.teeth() as usize;
         let (whole, number) = full_ring(&body.sector, teeth);
         let basis = FaceBasis::new(face, Parity::Symmetric, 16e-3, &Material::STEEL).unwrap();
         let rim: Vec<Vec<u32>> = (0..teeth)
-            .flat_map(|t| body.sector.rim.iter().map(|edge| edge.iter().map(|&n| number(t, n)).collect()).collect::<Vec<Vec<u32>>>())
+            .flat_map(|t| {
+                body.sector
+                    .rim
+                    .iter()
+                    .map(|edge| edge.iter().map(|&n| number(t, n)).collect())
+                    .collect::<Vec<Vec<u32>>>()
+            })
             .collect();
         let full = CondensedBody::new(
             &Substructure {
@@ -78,13 +93,17 @@ fn invariant_cyclic_condensation_equals_the_full_gear() {
         let weights = |roll: f64| -> Vec<(u32, Vector2<f64>)> {
             let arc = roll * roll / (2.0 * gear.base_radius());
             let index = flank.arc_breaks.windows(2).position(|w| w[0] <= arc && arc <= w[1]).unwrap();
-            let xi = 2.0 * (arc - flank.arc_breaks[index]) / (flank.arc_breaks[index + 1] - flank.arc_breaks[index]) - 1.0;
+            let xi =
+                2.0 * (arc - flank.arc_breaks[index]) / (flank.arc_breaks[index + 1] - flank.arc_breaks[index]) - 1.0;
             let line = fecm::element::lagrange::LagrangeBasis::new(mesh.order);
             let (mut n, mut d) = (vec![0.0; mesh.order + 1], vec![0.0; mesh.order + 1]);
             line.values_into(xi, &mut n);
             line.derivatives_into(xi, &mut d);
             let edge = &flank.edges[index];
-            let tangent = edge.iter().zip(&d).fold(Vector2::zeros(), |s, (&k, d)| s + body.sector.mesh.nodes[k as usize].coords * *d);
+            let tangent = edge
+                .iter()
+                .zip(&d)
+                .fold(Vector2::zeros(), |s, (&k, d)| s + body.sector.mesh.nodes[k as usize].coords * *d);
             let normal = Vector2::new(-tangent.y, tangent.x).normalize();
             edge.iter().zip(&n).map(|(&k, n)| (k, normal * *n)).collect()
         };
@@ -161,7 +180,11 @@ fn order_compliance_converges_with_the_mesh() {
     let at = |order, density| {
         let mesh = MeshDensity { order, density };
         let body = GearBody::new(
-            &gear, FlankSide::Upper, &Material::STEEL, &options(FaceModel::PlaneStress, BoreCondition::RigidHub, mesh), "gear",
+            &gear,
+            FlankSide::Upper,
+            &Material::STEEL,
+            &options(FaceModel::PlaneStress, BoreCondition::RigidHub, mesh),
+            "gear",
         )
         .unwrap();
         let stations = [body.station(0.026).unwrap()];

@@ -37,7 +37,8 @@ fn coarse(face: FaceModel) -> PairModelOptions {
 
 fn solve(pair: &GearPair, options: &PairModelOptions, mesh_cycles: Vec<f64>, torque: f64) -> Vec<PositionResult> {
     let model = PairModel::new(pair, options).unwrap();
-    let request = StaticsRequest { mesh_cycles, torques: vec![torque], stiffness_difference: false, keep_pressure: true };
+    let request =
+        StaticsRequest { mesh_cycles, torques: vec![torque], stiffness_difference: false, keep_pressure: true };
     model.solve(&request, &()).unwrap().results.remove(0)
 }
 
@@ -68,7 +69,9 @@ fn hub_reaction(model: &PairModel, position: &PositionResult, member: usize, sti
                 }
                 for (eta, face_weight) in gauss_rule(8) {
                     let z = 0.5 * width * eta;
-                    let moved = edge.iter().zip(&shapes).fold(Vector2::zeros(), |sum, (&n, shape)| sum + field.at(body, sector, n as usize, z).xy() * *shape);
+                    let moved = edge.iter().zip(&shapes).fold(Vector2::zeros(), |sum, (&n, shape)| {
+                        sum + field.at(body, sector, n as usize, z).xy() * *shape
+                    });
                     let force = -stiffness * moved * weight * tangent.norm() * face_weight * 0.5 * width;
                     total[0] += force.x;
                     total[1] += force.y;
@@ -110,7 +113,12 @@ fn invariant_hub_reactions_balance_contact_forces_and_torque() {
         options.wheel.bore = BoreCondition::ElasticHub { stiffness };
         let model = PairModel::new(&pair, &options).unwrap();
         let mirrored = model.stats().symmetric && matches!(face, FaceModel::Solid { .. });
-        let request = StaticsRequest { mesh_cycles: vec![0.0, 0.45, 0.9], torques: vec![TORQUE], stiffness_difference: false, keep_pressure: true };
+        let request = StaticsRequest {
+            mesh_cycles: vec![0.0, 0.45, 0.9],
+            torques: vec![TORQUE],
+            stiffness_difference: false,
+            keep_pressure: true,
+        };
         for at in &model.solve(&request, &()).unwrap().results[0] {
             assert!(at.stats.torque_residual < 1e-9, "{face:?} {}: {}", at.mesh_cycle, at.stats.torque_residual);
             assert!(at.stats.solver.kkt_violation < 1e-9 && at.stats.solver.complementarity < 1e-9);
@@ -120,7 +128,11 @@ fn invariant_hub_reactions_balance_contact_forces_and_torque() {
                 let force = load[0].hypot(load[1]);
                 for (k, scale) in [force, force, TORQUE].into_iter().enumerate() {
                     let out_of_balance = (reaction[k] + load[k]).abs() / scale;
-                    assert!(out_of_balance < 1e-9, "{face:?} {} gear {member} component {k}: {out_of_balance}", at.mesh_cycle);
+                    assert!(
+                        out_of_balance < 1e-9,
+                        "{face:?} {} gear {member} component {k}: {out_of_balance}",
+                        at.mesh_cycle
+                    );
                 }
             }
             // exact flanks against meshed ones: the polynomial edges deviate by their interpolation error
@@ -210,7 +222,9 @@ fn invariant_half_face_equals_whole_face() {
 /// factor of four, on a mesh that resolves the shallowest.
 #[test]
 fn invariant_matching_depth() {
-    for (face, density) in [(FaceModel::PlaneStress, 2.0), (FaceModel::PlaneStrain, 2.0), (FaceModel::Solid { order: 6 }, 1.5)] {
+    for (face, density) in
+        [(FaceModel::PlaneStress, 2.0), (FaceModel::PlaneStrain, 2.0), (FaceModel::Solid { order: 6 }, 1.5)]
+    {
         let answers: Vec<f64> = [0.05, 0.1, 0.2]
             .into_iter()
             .map(|depth| {
@@ -230,7 +244,12 @@ fn invariant_matching_depth() {
 #[test]
 fn invariant_threads_do_not_change_a_bit() {
     let pair = pair(25, 31);
-    let request = StaticsRequest { mesh_cycles: (0..20).map(|k| f64::from(k) / 20.0).collect(), torques: vec![20.0, TORQUE], stiffness_difference: true, keep_pressure: true };
+    let request = StaticsRequest {
+        mesh_cycles: (0..20).map(|k| f64::from(k) / 20.0).collect(),
+        torques: vec![20.0, TORQUE],
+        stiffness_difference: true,
+        keep_pressure: true,
+    };
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
@@ -262,7 +281,12 @@ fn invariant_solvers_agree_on_gear_contact() {
 fn invariant_tangent_equals_differences_and_work() {
     let model = PairModel::new(&pair(25, 31), &coarse(FaceModel::PlaneStrain)).unwrap();
     let torques: Vec<f64> = (0..=40).map(|k| TORQUE * (0.9 + 0.005 * f64::from(k))).collect();
-    let request = StaticsRequest { mesh_cycles: vec![0.0], torques: torques.clone(), stiffness_difference: true, keep_pressure: false };
+    let request = StaticsRequest {
+        mesh_cycles: vec![0.0],
+        torques: torques.clone(),
+        stiffness_difference: true,
+        keep_pressure: false,
+    };
     let results = model.solve(&request, &()).unwrap().results;
     let radius = model.pairing().base_radius(1);
     // integral of compliance over the force gives the change of transmission error
@@ -272,7 +296,8 @@ fn invariant_tangent_equals_differences_and_work() {
     let change = results[40][0].static_transmission_error - results[0][0].static_transmission_error;
     close(integral, change, 2e-3, "integral of the tangent compliance");
     for result in &results {
-        let (exact, difference) = (result[0].stiffness_local_slope.unwrap(), result[0].stiffness_local_slope_difference.unwrap());
+        let (exact, difference) =
+            (result[0].stiffness_local_slope.unwrap(), result[0].stiffness_local_slope_difference.unwrap());
         close(exact, difference, 0.01, "local slope");
     }
 }

@@ -59,9 +59,21 @@ fn assert_same(a: &ContactSolution, b: &ContactSolution, case: &Case, what: &str
 
 /// `conditioning` multiplies the bounds: rounding errors of a factorisation grow with the condition number.
 fn assert_optimal_within(solution: &ContactSolution, conditioning: f64, what: &str) {
-    assert!(solution.stats.kkt_violation < 1e-11 * conditioning, "{what}: KKT violation {}", solution.stats.kkt_violation);
-    assert!(solution.stats.complementarity < 1e-10 * conditioning, "{what}: complementarity {}", solution.stats.complementarity);
-    assert!(solution.stats.load_residual < 1e-12 * conditioning, "{what}: load residual {}", solution.stats.load_residual);
+    assert!(
+        solution.stats.kkt_violation < 1e-11 * conditioning,
+        "{what}: KKT violation {}",
+        solution.stats.kkt_violation
+    );
+    assert!(
+        solution.stats.complementarity < 1e-10 * conditioning,
+        "{what}: complementarity {}",
+        solution.stats.complementarity
+    );
+    assert!(
+        solution.stats.load_residual < 1e-12 * conditioning,
+        "{what}: load residual {}",
+        solution.stats.load_residual
+    );
 }
 
 fn assert_optimal(solution: &ContactSolution, what: &str) {
@@ -221,11 +233,20 @@ fn extreme_malformed_problems_are_typed_errors() {
     let good = Case { compliance: Mat::identity(2, 2), gap: vec![0.0; 2], arm: vec![1.0; 2], load: 1.0 };
     let solve = |case: &Case| ActiveSetSolver::default().solve(&case.problem(), None).unwrap_err();
     assert!(matches!(solve(&Case { gap: vec![0.0; 3], ..clone(&good) }), LcpError::Size { gaps: 3, .. }));
-    assert!(matches!(solve(&Case { gap: vec![0.0, f64::NAN], ..clone(&good) }), LcpError::Value { what: "gap", cell: 1, .. }));
-    assert!(matches!(solve(&Case { arm: vec![1.0, 0.0], ..clone(&good) }), LcpError::Value { what: "arm", cell: 1, .. }));
+    assert!(matches!(
+        solve(&Case { gap: vec![0.0, f64::NAN], ..clone(&good) }),
+        LcpError::Value { what: "gap", cell: 1, .. }
+    ));
+    assert!(matches!(
+        solve(&Case { arm: vec![1.0, 0.0], ..clone(&good) }),
+        LcpError::Value { what: "arm", cell: 1, .. }
+    ));
     assert!(matches!(solve(&Case { load: -1.0, ..clone(&good) }), LcpError::Load { .. }));
     let indefinite = Mat::from_fn(2, 2, |i, j| if i == j { 1.0 } else { 2.0 });
-    assert!(matches!(solve(&Case { compliance: indefinite, ..clone(&good) }), LcpError::NotPositiveDefinite { cells: 2 }));
+    assert!(matches!(
+        solve(&Case { compliance: indefinite, ..clone(&good) }),
+        LcpError::NotPositiveDefinite { cells: 2 }
+    ));
 }
 
 #[test]

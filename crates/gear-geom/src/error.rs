@@ -50,7 +50,9 @@ pub enum GeometryError {
         allowed: String,
     },
     /// The fillet reaches to the tip: no involute is left.
-    #[error("no involute is left on the flank: the fillet ends at radius {form_radius:.6} m, the tip form circle is {tip_form_radius:.6} m")]
+    #[error(
+        "no involute is left on the flank: the fillet ends at radius {form_radius:.6} m, the tip form circle is {tip_form_radius:.6} m"
+    )]
     NoInvolute {
         /// Form radius (m).
         form_radius: f64,
@@ -58,7 +60,9 @@ pub enum GeometryError {
         tip_form_radius: f64,
     },
     /// Two gears that cannot mesh.
-    #[error("base pitches differ: {pinion:.9} m on the pinion, {wheel:.9} m on the wheel; module and pressure angle must agree")]
+    #[error(
+        "base pitches differ: {pinion:.9} m on the pinion, {wheel:.9} m on the wheel; module and pressure angle must agree"
+    )]
     BasePitch {
         /// Pinion (m).
         pinion: f64,
@@ -91,7 +95,9 @@ pub enum GeometryError {
         clearance: f64,
     },
     /// Contact ratio below one.
-    #[error("contact ratio {contact_ratio:.4} is below 1: no pair of teeth is in contact for part of the mesh cycle; use larger tip circles")]
+    #[error(
+        "contact ratio {contact_ratio:.4} is below 1: no pair of teeth is in contact for part of the mesh cycle; use larger tip circles"
+    )]
     ContactRatio {
         /// Contact ratio.
         contact_ratio: f64,
@@ -110,7 +116,9 @@ pub enum GeometryError {
         form: f64,
     },
     /// Tips of an internal pair that foul each other away from the line of action.
-    #[error("pinion and ring tips foul each other outside the mesh by {overlap:.3e} m; use a larger difference of tooth numbers or shorter teeth")]
+    #[error(
+        "pinion and ring tips foul each other outside the mesh by {overlap:.3e} m; use a larger difference of tooth numbers or shorter teeth"
+    )]
     TipFouling {
         /// Overlap (m).
         overlap: f64,
@@ -127,7 +135,9 @@ impl GeometryError {
             Self::PointedTeeth { .. } | Self::NoInvolute { .. } => "tip_radius",
             Self::FilletDoesNotFit { .. } => "fillet",
             Self::BasePitch { .. } => "module",
-            Self::CentreDistance { .. } | Self::NegativeBacklash { .. } | Self::TipClearance { .. } => "centre_distance",
+            Self::CentreDistance { .. } | Self::NegativeBacklash { .. } | Self::TipClearance { .. } => {
+                "centre_distance"
+            }
             Self::ContactRatio { .. } | Self::Interference { .. } | Self::TipFouling { .. } => "tip_radius",
         }
     }

@@ -161,9 +161,8 @@ fn rack(spec: &GearSpec, corner: f64, base: f64, half_angle: f64) -> Result<Fill
     let outside = |t: f64| {
         let point = curve.point(t);
         let radius = point.coords.norm();
-        (radius > base).then(|| {
-            point.y.atan2(point.x) + involute_at_roll(base, roll_distance(base, radius)) - half_angle
-        })
+        (radius > base)
+            .then(|| point.y.atan2(point.x) + involute_at_roll(base, roll_distance(base, radius)) - half_angle)
     };
     const SAMPLES: u32 = 2000;
     let at = |k: u32| 3.0 * joins * f64::from(k) / f64::from(SAMPLES);
@@ -200,7 +199,9 @@ fn shaper(
     let cutter_tip = 0.5 * spec.module * f64::from(cutter_teeth) + addendum * spec.module;
     let distance = spec.root_radius - cutter_tip;
     if !(distance > base - cutter_base) {
-        return fail(format!("the shaper's axis would be only {distance:.6} m from the ring's; fewer teeth or a smaller addendum"));
+        return fail(format!(
+            "the shaper's axis would be only {distance:.6} m from the ring's; fewer teeth or a smaller addendum"
+        ));
     }
     let alpha = ((base - cutter_base) / distance).acos();
     let half_pitch = std::f64::consts::PI / f64::from(spec.teeth);

@@ -4,7 +4,7 @@ use nalgebra::{Point2, Vector2};
 
 use crate::error::{GeometryError, GeometryErrors};
 use crate::fillet::{Fillet, FilletSpec};
-use crate::involute::{involute, involute_at_roll, inverse_involute, radius_at_roll, roll_distance};
+use crate::involute::{inverse_involute, involute, involute_at_roll, radius_at_roll, roll_distance};
 use crate::modification::FlankModification;
 use crate::outline::HalfToothOutline;
 
@@ -144,7 +144,13 @@ impl GearSpec {
         };
         range("teeth", f64::from(self.teeth), 6.0, 2000.0, "teeth");
         range("module", self.module, 1e-5, 1.0, "m");
-        range("pressure_angle", self.pressure_angle, 10_f64.to_radians(), 35_f64.to_radians(), "rad (10 to 35 degrees)");
+        range(
+            "pressure_angle",
+            self.pressure_angle,
+            10_f64.to_radians(),
+            35_f64.to_radians(),
+            "rad (10 to 35 degrees)",
+        );
         range("facewidth", self.facewidth, 1e-5, 10.0, "m");
         range("tip_round", self.tip_round, 0.0, 0.5 * self.module, "m (at most half a module)");
         for (parameter, value) in
@@ -158,7 +164,13 @@ impl GearSpec {
         let modification = &self.modification;
         for relief in [&modification.tip_relief, &modification.root_relief].into_iter().flatten() {
             let length = (relief.end_roll - relief.start_roll).abs();
-            range("relief start", length, 1e-9 * self.module, f64::INFINITY, "m of roll distance to the end of the involute");
+            range(
+                "relief start",
+                length,
+                1e-9 * self.module,
+                f64::INFINITY,
+                "m of roll distance to the end of the involute",
+            );
             range("relief amount", relief.amount, 0.0, self.module, "m");
         }
         if let Some(relief) = &modification.end_relief {
@@ -177,11 +189,8 @@ impl GearSpec {
                 allowed: "a full grid with ascending roll distances and face positions and finite values".into(),
             });
         }
-        let (tip, root, rim) = (
-            ("tip_radius", self.tip_radius),
-            ("root_radius", self.root_radius),
-            ("rim_radius", self.rim_radius),
-        );
+        let (tip, root, rim) =
+            (("tip_radius", self.tip_radius), ("root_radius", self.root_radius), ("rim_radius", self.rim_radius));
         let order = match self.kind {
             GearKind::External => [(rim, root), (root, tip)],
             GearKind::Internal => [(tip, root), (root, rim)],
@@ -236,7 +245,8 @@ impl Gear {
         let tip_form_radius = radius_at_roll(base, centre_roll + sigma * spec.tip_round);
         let land = half_angle - spec.tip_round / base - sigma * involute_at_roll(base, centre_roll);
         if !(land > 0.0) {
-            let pointed = if spec.kind == GearKind::External { pointed_radius(base, half_angle) } else { spec.tip_radius };
+            let pointed =
+                if spec.kind == GearKind::External { pointed_radius(base, half_angle) } else { spec.tip_radius };
             return Err(GeometryError::PointedTeeth {
                 pointed_radius: pointed,
                 tip_radius: spec.tip_radius,
@@ -249,7 +259,14 @@ impl Gear {
         if !(involute_left > 0.02 * spec.module) {
             return Err(GeometryError::NoInvolute { form_radius, tip_form_radius }.into());
         }
-        Ok(Self { spec: spec.clone(), base_radius: base, base_half_angle: half_angle, fillet, form_radius, tip_form_radius })
+        Ok(Self {
+            spec: spec.clone(),
+            base_radius: base,
+            base_half_angle: half_angle,
+            fillet,
+            form_radius,
+            tip_form_radius,
+        })
     }
 
     /// The specification.

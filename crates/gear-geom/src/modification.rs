@@ -68,7 +68,8 @@ impl MeasuredDeviation {
     /// Whether the grid is complete, ascending and finite.
     #[must_use]
     pub fn is_valid(&self) -> bool {
-        let ascending = |v: &[f64]| !v.is_empty() && v.windows(2).all(|w| w[0] < w[1]) && v.iter().all(|x| x.is_finite());
+        let ascending =
+            |v: &[f64]| !v.is_empty() && v.windows(2).all(|w| w[0] < w[1]) && v.iter().all(|x| x.is_finite());
         let full = |row: &Vec<f64>| row.len() == self.face.len() && row.iter().all(|x| x.is_finite());
         ascending(&self.roll)
             && ascending(&self.face)
@@ -157,8 +158,18 @@ mod tests {
     fn analytic_relief_and_crown_at_their_ends() {
         let width = 0.03;
         let modification = FlankModification {
-            tip_relief: Some(ProfileRelief { amount: 14e-6, start_roll: 0.018, end_roll: 0.022, shape: ReliefShape::Linear }),
-            root_relief: Some(ProfileRelief { amount: 6e-6, start_roll: 0.012, end_roll: 0.010, shape: ReliefShape::Parabolic }),
+            tip_relief: Some(ProfileRelief {
+                amount: 14e-6,
+                start_roll: 0.018,
+                end_roll: 0.022,
+                shape: ReliefShape::Linear,
+            }),
+            root_relief: Some(ProfileRelief {
+                amount: 6e-6,
+                start_roll: 0.012,
+                end_roll: 0.010,
+                shape: ReliefShape::Parabolic,
+            }),
             lead_crown: 28e-6,
             end_relief: Some(EndRelief { amount: 5e-6, length: 0.003, shape: ReliefShape::Linear }),
             lead_slope: 4e-6,

@@ -50,7 +50,8 @@ impl HalfToothOutline {
         let rolls = [gear.form_radius(), gear.tip_form_radius()].map(|radius| gear.roll_distance(radius));
         let start = gear.fillet().point(0.0);
         let root_angles = [std::f64::consts::PI / f64::from(gear.teeth()), start.y.atan2(start.x)];
-        let (end, normal) = (gear.flank_point(FlankSide::Upper, rolls[1]), gear.flank_normal(FlankSide::Upper, rolls[1]));
+        let (end, normal) =
+            (gear.flank_point(FlankSide::Upper, rolls[1]), gear.flank_normal(FlankSide::Upper, rolls[1]));
         let round_centre = end - normal * gear.tip_round();
         let land_angle = if gear.tip_round() > 0.0 {
             round_centre.y.atan2(round_centre.x)
@@ -71,9 +72,7 @@ impl HalfToothOutline {
             OutlineSegment::RootLand => polar(self.gear.root_radius(), mix(self.root_angles)),
             OutlineSegment::Fillet => self.gear.fillet().point(u),
             OutlineSegment::Flank => self.gear.flank_point(FlankSide::Upper, mix(self.rolls)),
-            OutlineSegment::TipRound => {
-                self.round_centre + polar(self.gear.tip_round(), mix(self.round_angles)).coords
-            }
+            OutlineSegment::TipRound => self.round_centre + polar(self.gear.tip_round(), mix(self.round_angles)).coords,
             OutlineSegment::TipLand => polar(self.gear.tip_radius(), self.land_angle * (1.0 - u)),
         }
     }

@@ -99,7 +99,12 @@ impl std::fmt::Display for Finding {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Undercut { member, form_radius } => {
-                write!(f, "the {} is undercut: its involute begins at radius {:.4} mm", member.name(), form_radius * 1e3)
+                write!(
+                    f,
+                    "the {} is undercut: its involute begins at radius {:.4} mm",
+                    member.name(),
+                    form_radius * 1e3
+                )
             }
             Self::FilletContact { member, start, form } => write!(
                 f,
@@ -204,7 +209,9 @@ impl GearPair {
         // from where the mating involute ends, its round left out
         let start = match member {
             Member::Pinion => self.partner_roll(Member::Wheel, self.wheel.roll_distance(self.wheel.tip_form_radius())),
-            Member::Wheel => self.partner_roll(Member::Pinion, self.pinion.roll_distance(self.pinion.tip_form_radius())),
+            Member::Wheel => {
+                self.partner_roll(Member::Pinion, self.pinion.roll_distance(self.pinion.tip_form_radius()))
+            }
         };
         let below = gear.kind().sigma() * (form - start);
         if start < 0.0 || below > TOLERATED_FILLET_CONTACT * gear.base_pitch() {

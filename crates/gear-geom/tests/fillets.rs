@@ -24,8 +24,14 @@ fn analytic_rack_trochoid_is_the_envelope_of_the_rack_corner() {
     for (teeth, corner, root) in [(27_u32, 0.8e-3, 36.9e-3), (60, 1.1e-3, 86.2e-3), (12, 0.9e-3, 14.25e-3)] {
         let module = 3e-3;
         let spec = GearSpec {
-            teeth, module, tip_radius: 0.5 * module * f64::from(teeth) + module, root_radius: root,
-            rim_radius: 0.5 * root, fillet: FilletSpec::Rack { tip_radius: corner }, tip_round: 0.0, ..GearSpec::default()
+            teeth,
+            module,
+            tip_radius: 0.5 * module * f64::from(teeth) + module,
+            root_radius: root,
+            rim_radius: 0.5 * root,
+            fillet: FilletSpec::Rack { tip_radius: corner },
+            tip_round: 0.0,
+            ..GearSpec::default()
         };
         let gear = Gear::new(&spec).unwrap();
         let (r, alpha) = (spec.reference_radius(), spec.pressure_angle);
@@ -51,9 +57,16 @@ fn analytic_rack_trochoid_is_the_envelope_of_the_rack_corner() {
 fn analytic_shaper_trochoid_is_the_envelope_of_the_cutter_corner() {
     let (cutter_teeth, addendum, corner) = (25_u32, 1.25, 0.6e-3);
     let spec = GearSpec {
-        kind: GearKind::Internal, teeth: 99, module: 3e-3, thickness: ToothThickness::AtReference(4.6e-3),
-        tip_radius: 146.2e-3, root_radius: 152.25e-3, rim_radius: 165e-3,
-        fillet: FilletSpec::Shaper { teeth: cutter_teeth, addendum, tip_radius: corner }, tip_round: 0.0, ..GearSpec::default()
+        kind: GearKind::Internal,
+        teeth: 99,
+        module: 3e-3,
+        thickness: ToothThickness::AtReference(4.6e-3),
+        tip_radius: 146.2e-3,
+        root_radius: 152.25e-3,
+        rim_radius: 165e-3,
+        fillet: FilletSpec::Shaper { teeth: cutter_teeth, addendum, tip_radius: corner },
+        tip_round: 0.0,
+        ..GearSpec::default()
     };
     let ring = Gear::new(&spec).unwrap();
     // independently: the cutter whose tooth fills the ring's space where both roll
@@ -66,8 +79,7 @@ fn analytic_shaper_trochoid_is_the_envelope_of_the_cutter_corner() {
     let space = 2.0 * std::f64::consts::PI * radius / 99.0 - ring.thickness_at(radius);
     let cutter_half_at_base = 0.5 * space / (radius * ratio) + involute(working);
     let centre_radius = tip - corner;
-    let centre_angle =
-        cutter_half_at_base - corner / cutter_base - involute((cutter_base / centre_radius).acos());
+    let centre_angle = cutter_half_at_base - corner / cutter_base - involute((cutter_base / centre_radius).acos());
     assert!((inverse_involute(involute(working)) - working).abs() < 1e-12);
     let pitch = std::f64::consts::PI / 99.0;
     for k in 0..=20 {

@@ -59,7 +59,8 @@ fn ring_pair() -> GearPair {
 #[test]
 fn peer_dissertation_table_3_1() {
     let pair = nonunity_pair();
-    let close = |value: f64, printed: f64, digit: f64| assert!((value - printed).abs() < digit, "{value} against {printed}");
+    let close =
+        |value: f64, printed: f64, digit: f64| assert!((value - printed).abs() < digit, "{value} against {printed}");
     close(pair.pinion().base_radius() * 1e3, 35.20, 0.005);
     close(pair.wheel().base_radius() * 1e3, 45.63, 0.005);
     close(pair.working_pressure_angle().to_degrees(), 24.6, 1e-9);
@@ -94,7 +95,10 @@ fn invariant_flanks_are_conjugate() {
                     let (gear, side) = (pair.gear(member), pair.working_side(member));
                     let roll = pair.contact_roll(member, pair_number, cycle);
                     let turn = Rotation2::new(pair.tooth_angle(member, pair_number, cycle));
-                    (pair.centre(member) + turn * gear.flank_point(side, roll).coords, turn * gear.flank_normal(side, roll))
+                    (
+                        pair.centre(member) + turn * gear.flank_point(side, roll).coords,
+                        turn * gear.flank_normal(side, roll),
+                    )
                 };
                 let ((p, n), (q, m)) = (touch(Member::Pinion), touch(Member::Wheel));
                 assert!((p - q).norm() < 1e-14 * 1e3, "points differ by {}", (p - q).norm());
@@ -123,9 +127,16 @@ fn invariant_tooth_numbers_follow_the_rotation() {
 #[test]
 fn invariant_outline_has_no_gap_in_place_or_slope() {
     use gear_geom::OutlineSegment;
-    let circular = GearSpec { fillet: FilletSpec::Circular { radius: 1.9e-3 }, teeth: 40, tip_radius: 126e-3, root_radius: 112.8e-3, ..GearSpec::default() };
+    let circular = GearSpec {
+        fillet: FilletSpec::Circular { radius: 1.9e-3 },
+        teeth: 40,
+        tip_radius: 126e-3,
+        root_radius: 112.8e-3,
+        ..GearSpec::default()
+    };
     let ring = ring_pair().wheel().clone();
-    let ring_circular = Gear::new(&GearSpec { fillet: FilletSpec::Circular { radius: 0.5e-3 }, ..ring.spec().clone() }).unwrap();
+    let ring_circular =
+        Gear::new(&GearSpec { fillet: FilletSpec::Circular { radius: 0.5e-3 }, ..ring.spec().clone() }).unwrap();
     let pair = nonunity_pair();
     for gear in [pair.pinion().clone(), pair.wheel().clone(), Gear::new(&circular).unwrap(), ring, ring_circular] {
         let outline = gear.half_tooth_outline();
@@ -179,24 +190,42 @@ fn extreme_each_fault_is_found_and_explained() {
 
     let good = gear(base.clone()).unwrap();
     let pair = |a: Gear, b: Gear, distance: f64| GearPair::new(a, b, distance).unwrap_err();
-    let other = gear(GearSpec { module: 5e-3, tip_radius: 67.5e-3, root_radius: 56.25e-3, fillet: FilletSpec::Rack { tip_radius: 1.9e-3 }, ..base.clone() }).unwrap();
+    let other = gear(GearSpec {
+        module: 5e-3,
+        tip_radius: 67.5e-3,
+        root_radius: 56.25e-3,
+        fillet: FilletSpec::Rack { tip_radius: 1.9e-3 },
+        ..base.clone()
+    })
+    .unwrap();
     assert!(matches!(only(&pair(good.clone(), other, 140e-3)), GeometryError::BasePitch { .. }));
     assert!(matches!(only(&pair(good.clone(), good.clone(), 130e-3)), GeometryError::CentreDistance { .. }));
     let jam = pair(good.clone(), good.clone(), 148e-3);
     assert!(jam.0.iter().any(|e| matches!(e, GeometryError::NegativeBacklash { .. })), "{jam}");
     let apart = pair(good.clone(), good.clone(), 158e-3);
     assert!(apart.0.iter().any(|e| matches!(e, GeometryError::ContactRatio { .. })), "{apart}");
-    let few = gear(GearSpec { teeth: 12, tip_radius: 42e-3, root_radius: 28.5e-3, rim_radius: 10e-3, ..base.clone() }).unwrap();
+    let few = gear(GearSpec { teeth: 12, tip_radius: 42e-3, root_radius: 28.5e-3, rim_radius: 10e-3, ..base.clone() })
+        .unwrap();
     assert!(few.is_undercut());
     let rack_like = gear(GearSpec { teeth: 120, tip_radius: 366e-3, root_radius: 352.5e-3, ..base.clone() }).unwrap();
     let interference = pair(few, rack_like, 396e-3);
-    assert!(interference.0.iter().any(|e| matches!(e, GeometryError::Interference { member: "pinion", .. })), "{interference}");
+    assert!(
+        interference.0.iter().any(|e| matches!(e, GeometryError::Interference { member: "pinion", .. })),
+        "{interference}"
+    );
     let fouling = GearPair::new(
         gear(GearSpec { teeth: 90, tip_radius: 276e-3, root_radius: 262.5e-3, ..base.clone() }).unwrap(),
         gear(GearSpec {
-            kind: GearKind::Internal, teeth: 96, tip_radius: 282.6e-3, root_radius: 296e-3, rim_radius: 330e-3,
-            thickness: ToothThickness::AtReference(9.2e-3), fillet: FilletSpec::Circular { radius: 1.2e-3 }, ..base.clone()
-        }).unwrap(),
+            kind: GearKind::Internal,
+            teeth: 96,
+            tip_radius: 282.6e-3,
+            root_radius: 296e-3,
+            rim_radius: 330e-3,
+            thickness: ToothThickness::AtReference(9.2e-3),
+            fillet: FilletSpec::Circular { radius: 1.2e-3 },
+            ..base.clone()
+        })
+        .unwrap(),
         18e-3,
     )
     .unwrap_err();
@@ -242,6 +271,7 @@ proptest! {
 #[test]
 fn invariant_sides_are_mirror_images() {
     let pair = nonunity_pair();
-    let (a, b) = (pair.pinion().flank_point(FlankSide::Upper, 0.018), pair.pinion().flank_point(FlankSide::Lower, 0.018));
+    let (a, b) =
+        (pair.pinion().flank_point(FlankSide::Upper, 0.018), pair.pinion().flank_point(FlankSide::Lower, 0.018));
     assert_eq!((a.x, a.y), (b.x, -b.y));
 }

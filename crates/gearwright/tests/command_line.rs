@@ -63,7 +63,10 @@ impl Scratch {
 
     /// Names in the folder, sorted.
     fn names(&self) -> Vec<String> {
-        let mut names: Vec<String> = std::fs::read_dir(self.path()).unwrap().map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
+        let mut names: Vec<String> = std::fs::read_dir(self.path())
+            .unwrap()
+            .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
         names.sort();
         names
     }
@@ -82,15 +85,24 @@ fn run_writes_everything_it_promises() {
     for name in ["series.csv", "summary.json", "pinion.vtu", "gear.vtu", "contact_pressure.vtu"] {
         assert!(folder.join(name).metadata().unwrap().len() > 100, "{name}");
     }
-    for name in ["transmission_error", "mesh_stiffness", "load_sharing", "tooth_forces", "flank_pressure", "contact_width", "peak_pressure"] {
+    for name in [
+        "transmission_error",
+        "mesh_stiffness",
+        "load_sharing",
+        "tooth_forces",
+        "flank_pressure",
+        "contact_width",
+        "peak_pressure",
+    ] {
         let svg = std::fs::read_to_string(folder.join(format!("{name}.svg"))).unwrap();
         assert!(svg.contains("<svg") && !svg.contains("NaN"), "{name}.svg");
         let png = std::fs::read(folder.join(format!("{name}.png"))).unwrap();
         assert_eq!(&png[1..4], b"PNG", "{name}.png");
     }
-    let summary: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap();
+    let summary: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap();
     assert_eq!(summary["results"]["status"]["converged"], 10);
-    assert_eq!(summary["inputs"]["numerics"]["cells_per_half_width"], 6.0, "defaults are spelled out");
+    assert_eq!(summary["inputs"]["numerics"]["cells_per_half_width"], 8.0, "defaults are spelled out");
     let ste = &summary["results"]["ste_um"];
     // the table holds what the summary says
     let mut table = csv::Reader::from_path(folder.join("series.csv")).unwrap();
@@ -122,7 +134,9 @@ fn threads_do_not_change_the_table() {
     let scratch = Scratch::new();
     scratch.write("small.toml", SMALL);
     let table = |threads: &str| {
-        assert!(gearwright(scratch.path(), &["run", "small.toml", "--threads", threads, "--out", threads]).status.success());
+        assert!(
+            gearwright(scratch.path(), &["run", "small.toml", "--threads", threads, "--out", threads]).status.success()
+        );
         std::fs::read(scratch.path().join(threads).join("series.csv")).unwrap()
     };
     assert_eq!(table("1"), table("2"));
@@ -139,7 +153,11 @@ fn bad_input_is_one_message_with_file_line_key_value_and_remedy() {
         ("module_mm = 6.0", "module_mm = -6.0", &["case.toml:5", "mesh.module_mm", "-6"]),
         ("torque_n_m = 200.0", "torque_n_m = nan", &["case.toml:26", "load.torque_n_m"]),
         ("torque_n_m = 200.0", "", &["load.torque_n_m", "required"]),
-        ("model = \"plane-strain\"", "model = \"plain-strain\"", &["case.toml:30", "analysis.model", "plain-strain", "plane-strain"]),
+        (
+            "model = \"plane-strain\"",
+            "model = \"plain-strain\"",
+            &["case.toml:30", "analysis.model", "plain-strain", "plane-strain"],
+        ),
         ("kind = \"spur-pair\"", "kind = \"spur_pair\"", &["case.toml:1", "kind", "spur_pair", "spur-pair"]),
         ("centre_distance_mm = 150.1", "centre_distance_mm = 140.0", &["case.toml:7", "centre_distance_mm"]),
         ("centre_distance_mm = 150.1", "centre_distance_mm = 162.5", &["case.toml:7", "contact ratio"]),
@@ -147,7 +165,11 @@ fn bad_input_is_one_message_with_file_line_key_value_and_remedy() {
         ("bore_diameter_mm = 60.0", "bore_diameter_mm = 140.0", &["case.toml:14", "pinion.bore_diameter_mm"]),
         ("[mesh]", "[mesh", &["case.toml:4"]),
         ("positions_per_cycle = 10", "positions_per_cycle = 0", &["case.toml:29", "analysis.positions_per_cycle", "0"]),
-        ("facewidth_mm = 16.0\n\n[gear]", "facewidth_mm = 16.0\nmodification.measured = \"nowhere.csv\"\n\n[gear]", &["case.toml:16", "nowhere.csv"]),
+        (
+            "facewidth_mm = 16.0\n\n[gear]",
+            "facewidth_mm = 16.0\nmodification.measured = \"nowhere.csv\"\n\n[gear]",
+            &["case.toml:16", "nowhere.csv"],
+        ),
     ];
     for (from, to, wanted) in cases {
         let scratch = Scratch::new();
@@ -205,7 +227,7 @@ fn init_writes_a_case_that_checks_and_explains_itself() {
 fn explain_tells_meaning_range_and_default() {
     let scratch = Scratch::new();
     let output = text(&gearwright(scratch.path(), &["explain", "cells_per_half_width"]).stdout);
-    for word in ["numerics.cells_per_half_width", "allowed", "default 6"] {
+    for word in ["numerics.cells_per_half_width", "allowed", "default 8"] {
         assert!(output.contains(word), "{word}: {output}");
     }
     let wrong = gearwright(scratch.path(), &["explain", "cells_per_halfwidth"]);

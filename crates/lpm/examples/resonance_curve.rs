@@ -10,9 +10,8 @@
 //! while the damaged tooth is in mesh, once in a rotation of 27 cycles.
 
 use lpm::{
-    Branch, ContinuationOptions, Curve, Excitation, GearPair, Input, Interpolation, LpmError,
-    Model, Options, Sampling, Stability, SteadyOptions, Supports, SweepOptions, SweepPoint,
-    frequencies,
+    Branch, ContinuationOptions, Curve, Excitation, GearPair, Input, Interpolation, LpmError, Model, Options, Sampling,
+    Stability, SteadyOptions, Supports, SweepOptions, SweepPoint, frequencies,
 };
 use std::time::Instant;
 
@@ -35,15 +34,8 @@ fn model(pair: &GearPair, loss: f64) -> Result<Model, LpmError> {
 
 fn main() -> Result<(), LpmError> {
     let has = |word: &str| std::env::args().any(|a| a == word);
-    let (input, top, count) = if has("free") {
-        (Input::Free, 9000.0, 177)
-    } else {
-        (Input::Prescribed, 4000.0, 77)
-    };
-    let pair = GearPair {
-        damping_when_apart: !has("undamped-flight"),
-        ..GearPair::table_3_2(input)
-    };
+    let (input, top, count) = if has("free") { (Input::Free, 9000.0, 177) } else { (Input::Prescribed, 4000.0, 77) };
+    let pair = GearPair { damping_when_apart: !has("undamped-flight"), ..GearPair::table_3_2(input) };
     let up = frequencies(200.0, top, count);
     let down: Vec<f64> = up.iter().rev().copied().collect();
     println!("state,method,mesh_frequency_hz,peak_to_peak_um,rms_um,separated,stability");
@@ -75,9 +67,7 @@ fn main() -> Result<(), LpmError> {
                 points.iter().filter(|p| p.multiple.is_none()).count()
             );
             for p in &points {
-                let kind = p
-                    .multiple
-                    .map_or("aperiodic".to_owned(), |n| format!("period {n}"));
+                let kind = p.multiple.map_or("aperiodic".to_owned(), |n| format!("period {n}"));
                 row(name, direction, p.mesh_frequency, &p.measure, &kind);
             }
         }
@@ -90,24 +80,15 @@ fn main() -> Result<(), LpmError> {
             m.sweep(speeds, &SweepOptions::default())?;
         }
     }
-    eprintln!(
-        "the same with spline tables: {:.2} s",
-        clock.elapsed().as_secs_f64()
-    );
+    eprintln!("the same with spline tables: {:.2} s", clock.elapsed().as_secs_f64());
 
     let clock = Instant::now();
     let start = healthy.steady_state(top, &healthy.equilibrium(0.0), &SteadyOptions::default())?;
-    let options = ContinuationOptions {
-        to: top,
-        ..Default::default()
-    };
+    let options = ContinuationOptions { to: top, ..Default::default() };
     let branch = healthy.continuation(top, &start.state, &options)?;
     report(&branch, clock.elapsed().as_secs_f64());
 
-    for (name, m) in [
-        ("rectangular wave", model(&pair, 0.3)?),
-        ("spline tables", smooth(&pair, 0.3)?),
-    ] {
+    for (name, m) in [("rectangular wave", model(&pair, 0.3)?), ("spline tables", smooth(&pair, 0.3)?)] {
         for f in [900.0, 1800.0] {
             rotation(name, &m, f)?;
         }
@@ -120,9 +101,7 @@ fn smooth(pair: &GearPair, loss: f64) -> Result<Model, LpmError> {
     let f0 = pair.mean_force();
     let wave = Curve::trapezoidal(STIFFNESS.0, STIFFNESS.1, 0.18, 0.64, 0.15)?;
     let sampled = |of: &dyn Fn(f64) -> f64| {
-        let y: Vec<f64> = (0..40)
-            .map(|i| of(wave.value(f64::from(i) / 40.0)))
-            .collect();
+        let y: Vec<f64> = (0..40).map(|i| of(wave.value(f64::from(i) / 40.0))).collect();
         Curve::samples(1, &y, Interpolation::Spline)
     };
     let s = 1.0 - loss;
@@ -141,22 +120,16 @@ fn rotation(name: &str, m: &Model, f: f64) -> Result<(), LpmError> {
         tolerance: steady,
         ..Default::default()
     };
-    let run = |o: &SteadyOptions| {
-        m.steady_response(f, &m.equilibrium(0.0), TEETH, &Sampling::default(), o)
-    };
+    let run = |o: &SteadyOptions| m.steady_response(f, &m.equilibrium(0.0), TEETH, &Sampling::default(), o);
     let exact = run(&options(1e-13, 1e-12))?.response;
     let (mut best, mut error) = (f64::INFINITY, 0.0);
     for _ in 0..20 {
         let clock = Instant::now();
         let r = run(&options(1e-8, 1e-8))?.response;
         best = best.min(clock.elapsed().as_secs_f64());
-        error = r
-            .transmission_error
-            .iter()
-            .zip(&exact.transmission_error)
-            .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f64::max)
-            / exact.peak_to_peak();
+        error =
+            r.transmission_error.iter().zip(&exact.transmission_error).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+                / exact.peak_to_peak();
     }
     eprintln!(
         "one rotation, {name}, {f} Hz, rest to sampled steady state: {:.2} ms, relative error {error:.1e}",

@@ -25,21 +25,14 @@ pub struct Oscillator {
 impl Oscillator {
     /// Displacement and velocity after time `t` (s) from `x` (m), `v` (m/s).
     pub fn after(&self, t: f64, x: f64, v: f64) -> (f64, f64) {
-        let (g, k, a) = (
-            0.5 * self.damping / self.mass,
-            self.stiffness / self.mass,
-            self.force / self.mass,
-        );
+        let (g, k, a) = (0.5 * self.damping / self.mass, self.stiffness / self.mass, self.force / self.mass);
         if self.stiffness == 0.0 {
             if g == 0.0 {
                 return (x + t * (v + 0.5 * a * t), v + a * t);
             }
             // Terminal velocity a / (2 g).
             let (end, decay) = (0.5 * a / g, (-2.0 * g * t).exp());
-            return (
-                x + end * t + (v - end) * (1.0 - decay) / (2.0 * g),
-                end + (v - end) * decay,
-            );
+            return (x + end * t + (v - end) * (1.0 - decay) / (2.0 * g), end + (v - end) * decay);
         }
         let u = x - a / k;
         let disc = g * g - k;
@@ -53,10 +46,7 @@ impl Oscillator {
             let w = disc.sqrt();
             ((w * t).cosh(), (w * t).sinh() / w)
         };
-        (
-            a / k + decay * (u * (c + g * s) + v * s),
-            decay * (v * (c - g * s) - k * u * s),
-        )
+        (a / k + decay * (u * (c + g * s) + v * s), decay * (v * (c - g * s) - k * u * s))
     }
 
     /// Undamped natural frequency (Hz).
@@ -81,19 +71,9 @@ pub fn bounce_period(mass: f64, stiffness: f64, force: f64, amplitude: f64) -> f
 
 /// Floquet multipliers of `m x'' + c x' + k(t) x = 0` where `k` is `k1` for `t1` seconds and `k2` for `t2`, as
 /// ((re, im), (re, im)), larger modulus first.
-pub fn two_stage_multipliers(
-    mass: f64,
-    damping: f64,
-    (k1, t1): (f64, f64),
-    (k2, t2): (f64, f64),
-) -> [(f64, f64); 2] {
+pub fn two_stage_multipliers(mass: f64, damping: f64, (k1, t1): (f64, f64), (k2, t2): (f64, f64)) -> [(f64, f64); 2] {
     let stage = |k, t| {
-        let o = Oscillator {
-            mass,
-            damping,
-            stiffness: k,
-            force: 0.0,
-        };
+        let o = Oscillator { mass, damping, stiffness: k, force: 0.0 };
         let ((a, c), (b, d)) = (o.after(t, 1.0, 0.0), o.after(t, 0.0, 1.0));
         [a, b, c, d]
     };
@@ -116,10 +96,7 @@ pub fn principal_instability(natural_frequency: f64, eps: f64, zeta: f64) -> Opt
     let half = (eps / 4.0).powi(2) - zeta * zeta;
     (half > 0.0).then(|| {
         let h = half.sqrt();
-        (
-            2.0 * natural_frequency * (1.0 - h),
-            2.0 * natural_frequency * (1.0 + h),
-        )
+        (2.0 * natural_frequency * (1.0 - h), 2.0 * natural_frequency * (1.0 + h))
     })
 }
 
@@ -129,32 +106,14 @@ mod tests {
 
     #[test]
     fn invariant_closed_forms_satisfy_the_equation_of_motion() {
-        for (damping, stiffness) in [
-            (0.0, 3.0),
-            (0.4, 3.0),
-            (2.0, 1.0),
-            (5.0, 1.0),
-            (0.0, 0.0),
-            (0.7, 0.0),
-        ] {
-            let o = Oscillator {
-                mass: 1.0,
-                damping,
-                stiffness,
-                force: 0.6,
-            };
+        for (damping, stiffness) in [(0.0, 3.0), (0.4, 3.0), (2.0, 1.0), (5.0, 1.0), (0.0, 0.0), (0.7, 0.0)] {
+            let o = Oscillator { mass: 1.0, damping, stiffness, force: 0.6 };
             for i in 0..20 {
                 let (t, h) = (0.2 * f64::from(i), 1e-4);
-                let ((xm, _), (x, v), (xp, _)) = (
-                    o.after(t - h, 0.3, -0.2),
-                    o.after(t, 0.3, -0.2),
-                    o.after(t + h, 0.3, -0.2),
-                );
+                let ((xm, _), (x, v), (xp, _)) =
+                    (o.after(t - h, 0.3, -0.2), o.after(t, 0.3, -0.2), o.after(t + h, 0.3, -0.2));
                 let residual = (xp - 2.0 * x + xm) / (h * h) + damping * v + stiffness * x - 0.6;
-                assert!(
-                    residual.abs() < 1e-6,
-                    "damping {damping}, stiffness {stiffness}, t {t}: {residual}"
-                );
+                assert!(residual.abs() < 1e-6, "damping {damping}, stiffness {stiffness}, t {t}: {residual}");
                 assert!(((xp - xm) / (2.0 * h) - v).abs() < 1e-7);
             }
         }

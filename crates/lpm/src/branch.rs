@@ -42,10 +42,7 @@ impl Default for ContinuationOptions {
             max_points: 5000,
             integration: Options::with_tolerance(1e-9),
             tolerance: 1e-8,
-            sampling: Sampling {
-                per_cycle: 64,
-                energy: false,
-            },
+            sampling: Sampling { per_cycle: 64, energy: false },
         }
     }
 }
@@ -54,41 +51,11 @@ impl ContinuationOptions {
     /// Checks ranges.
     pub fn validate(&self) -> Result<(), LpmError> {
         self.integration.validate()?;
-        check(
-            self.from > 0.0,
-            "least mesh frequency",
-            self.from,
-            "Hz",
-            "positive",
-        )?;
-        check(
-            self.to > self.from,
-            "largest mesh frequency",
-            self.to,
-            "Hz",
-            "above the least",
-        )?;
-        check(
-            (1e-4..=1.0).contains(&self.max_step),
-            "arclength step",
-            self.max_step,
-            "-",
-            "between 1e-4 and 1",
-        )?;
-        check(
-            self.max_points >= 2,
-            "points",
-            self.max_points as f64,
-            "-",
-            "at least 2",
-        )?;
-        check(
-            (1e-12..=1e-3).contains(&self.tolerance),
-            "residual",
-            self.tolerance,
-            "-",
-            "between 1e-12 and 1e-3",
-        )?;
+        check(self.from > 0.0, "least mesh frequency", self.from, "Hz", "positive")?;
+        check(self.to > self.from, "largest mesh frequency", self.to, "Hz", "above the least")?;
+        check((1e-4..=1.0).contains(&self.max_step), "arclength step", self.max_step, "-", "between 1e-4 and 1")?;
+        check(self.max_points >= 2, "points", self.max_points as f64, "-", "at least 2")?;
+        check((1e-12..=1e-3).contains(&self.tolerance), "residual", self.tolerance, "-", "between 1e-12 and 1e-3")?;
         Ok(())
     }
 }
@@ -152,9 +119,7 @@ impl Branch {
     pub fn stability_changes(&self) -> Vec<(usize, Stability)> {
         let turning: Vec<usize> = self.turning_points.iter().map(|t| t.after + 1).collect();
         (1..self.points.len())
-            .filter(|i| {
-                self.points[*i].stability != self.points[i - 1].stability && !turning.contains(i)
-            })
+            .filter(|i| self.points[*i].stability != self.points[i - 1].stability && !turning.contains(i))
             .map(|i| (i, self.points[i].stability))
             .collect()
     }
@@ -168,11 +133,7 @@ impl Branch {
             .chain(self.points.first().map(|p| p.mesh_frequency))
             .chain(self.points.last().map(|p| p.mesh_frequency))
             .collect();
-        ends.extend(
-            self.stability_changes()
-                .iter()
-                .map(|c| self.points[c.0].mesh_frequency),
-        );
+        ends.extend(self.stability_changes().iter().map(|c| self.points[c.0].mesh_frequency));
         ends.sort_by(f64::total_cmp);
         let mut found: Vec<(f64, f64)> = Vec::new();
         for w in ends.windows(2) {
@@ -207,31 +168,16 @@ impl Branch {
         curve
             .windows(2)
             .filter_map(|w| {
-                let (a, b) = (
-                    w[0].mesh_frequency - mesh_frequency,
-                    w[1].mesh_frequency - mesh_frequency,
-                );
+                let (a, b) = (w[0].mesh_frequency - mesh_frequency, w[1].mesh_frequency - mesh_frequency);
                 if a * b > 0.0 || a == b || b == 0.0 {
                     return None;
                 }
                 let t = a / (a - b);
                 let p = w[0].measure.peak_to_peak * (1.0 - t) + w[1].measure.peak_to_peak * t;
                 // At a turning point the multiplier is +1 and its sign rounding: the other end of the stretch tells.
-                let margin = |p: &BranchPoint| {
-                    p.multipliers
-                        .iter()
-                        .fold(0.0, |m: f64, x| m.max(x.modulus()))
-                        - 1.0
-                };
+                let margin = |p: &BranchPoint| p.multipliers.iter().fold(0.0, |m: f64, x| m.max(x.modulus())) - 1.0;
                 let (m0, m1) = (margin(w[0]), margin(w[1]));
-                Some((
-                    p,
-                    if m0.abs() > m1.abs() {
-                        m0 < 0.0
-                    } else {
-                        m1 < 0.0
-                    },
-                ))
+                Some((p, if m0.abs() > m1.abs() { m0 < 0.0 } else { m1 < 0.0 }))
             })
             .collect()
     }

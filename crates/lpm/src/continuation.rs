@@ -22,9 +22,7 @@ use crate::floquet::{multipliers, stability};
 use crate::integrate::{Method, Runner};
 use crate::linear;
 use crate::model::{Model, State, with_system};
-use crate::periodic::{
-    ShootingOptions, distance, follow, newton_matrix, period_map, repeatability, resolved,
-};
+use crate::periodic::{ShootingOptions, distance, follow, newton_matrix, period_map, repeatability, resolved};
 use crate::system::{System, Vector};
 
 /// Least cosine between tangents of neighbouring points.
@@ -51,9 +49,7 @@ impl Model {
             ..ShootingOptions::default()
         };
         let orbit = self.shoot(mesh_frequency, guess, &shooting)?;
-        let limit = options
-            .tolerance
-            .max(30.0 * repeatability(&options.integration));
+        let limit = options.tolerance.max(30.0 * repeatability(&options.integration));
         if orbit.residual > limit {
             return Err(LpmError::OutOfRange {
                 quantity: "residual of the first periodic solution",
@@ -106,11 +102,7 @@ impl<const N: usize> Tracer<'_, N> {
     }
 
     fn difference(&self, a: &Unknown<N>, b: &Unknown<N>) -> Vec<f64> {
-        let mut d: Vec<f64> = self
-            .by
-            .iter()
-            .map(|&i| (a.z.get(i) - b.z.get(i)) / self.s.unit(i))
-            .collect();
+        let mut d: Vec<f64> = self.by.iter().map(|&i| (a.z.get(i) - b.z.get(i)) / self.s.unit(i)).collect();
         d.push((a.f - b.f) / self.f_unit);
         d
     }
@@ -147,10 +139,7 @@ impl<const N: usize> Tracer<'_, N> {
             let residual = distance(self.s, self.method, &end, &u.z);
             if best.as_ref().is_none_or(|b| residual < b.residual) {
                 best = Some(Solved {
-                    u: Unknown {
-                        z: follow(&self.by, &u.z, &end),
-                        f: u.f,
-                    },
+                    u: Unknown { z: follow(&self.by, &u.z, &end), f: u.f },
                     jacobian: jacobian.clone(),
                     columns,
                     iterations,
@@ -162,34 +151,17 @@ impl<const N: usize> Tracer<'_, N> {
             }
             let mut rows = jacobian;
             rows.push(tangent.to_vec());
-            let mut rhs: Vec<f64> = self
-                .by
-                .iter()
-                .map(|&i| (u.z.get(i) - end.get(i)) / self.s.unit(i))
-                .collect();
-            let along: f64 = self
-                .difference(&u, base)
-                .iter()
-                .zip(tangent)
-                .map(|(a, b)| a * b)
-                .sum();
+            let mut rhs: Vec<f64> = self.by.iter().map(|&i| (u.z.get(i) - end.get(i)) / self.s.unit(i)).collect();
+            let along: f64 = self.difference(&u, base).iter().zip(tangent).map(|(a, b)| a * b).sum();
             rhs.push(ds - along);
             let step = linear::solve(rows, rhs, "continuation").ok()?;
             u = self.add(&u, &step, 1.0);
-            let strayed = self
-                .difference(&u, &predicted)
-                .iter()
-                .map(|d| d * d)
-                .sum::<f64>()
-                .sqrt();
+            let strayed = self.difference(&u, &predicted).iter().map(|d| d * d).sum::<f64>().sqrt();
             if strayed > ds.abs() {
                 return None;
             }
         }
-        let limit = self
-            .o
-            .tolerance
-            .max(30.0 * repeatability(&self.o.integration));
+        let limit = self.o.tolerance.max(30.0 * repeatability(&self.o.integration));
         best.filter(|b| b.residual < limit)
     }
 
@@ -207,8 +179,7 @@ impl<const N: usize> Tracer<'_, N> {
     fn report(&self, model: &Model, p: &Solved<N>) -> Result<BranchPoint, LpmError> {
         let state = self.s.export(&p.u.z);
         let cycles = self.s.excitation().period();
-        let response =
-            model.simulate(p.u.f, &state, cycles, &self.o.sampling, &self.o.integration)?;
+        let response = model.simulate(p.u.f, &state, cycles, &self.o.sampling, &self.o.integration)?;
         let multipliers = multipliers(self.s, &self.by, &p.columns)?;
         Ok(BranchPoint {
             mesh_frequency: p.u.f,
@@ -223,23 +194,12 @@ impl<const N: usize> Tracer<'_, N> {
     /// Point between `base` and `far`, `ds` further, where the tangent has no frequency component; `end` is that of `far`.
     ///
     /// Where noise of the integration keeps the corrector from the point itself, the nearest point found counts.
-    fn turning(
-        &self,
-        base: &Unknown<N>,
-        tangent: &[f64],
-        ds: f64,
-        far: &Solved<N>,
-        end: f64,
-    ) -> Solved<N> {
+    fn turning(&self, base: &Unknown<N>, tangent: &[f64], ds: f64, far: &Solved<N>, end: f64) -> Solved<N> {
         let ((mut a, mut fa), (mut b, mut fb)) = ((0.0, self.frequency_of(tangent)), (ds, end));
         let mut best = (end.abs(), far.clone());
         let mut side = 0i8;
         for i in 0..40 {
-            let x = if i % 8 == 7 {
-                0.5 * (a + b)
-            } else {
-                (a * fb - b * fa) / (fb - fa)
-            };
+            let x = if i % 8 == 7 { 0.5 * (a + b) } else { (a * fb - b * fa) / (fb - fa) };
             let found = self.correct(base, tangent, x);
             let Some((p, t)) = found.and_then(|p| self.tangent(&p, tangent).map(|t| (p, t))) else {
                 break;
@@ -277,27 +237,13 @@ fn trace<const N: usize>(
     o: &ContinuationOptions,
 ) -> Result<Branch, LpmError> {
     let method = o.integration.method_for::<N>()?;
-    let t = Tracer {
-        s,
-        o,
-        f_unit: s.omega / std::f64::consts::TAU,
-        method,
-        by: resolved(s, method),
-    };
+    let t = Tracer { s, o, f_unit: s.omega / std::f64::consts::TAU, method, by: resolved(s, method) };
     let u = Unknown { z, f: frequency };
     let (end, jacobian, columns) = t.linearise(&u)?;
-    let mut here = Solved {
-        u,
-        jacobian,
-        columns,
-        iterations: 0,
-        residual: distance(s, method, &end, &z),
-    };
+    let mut here = Solved { u, jacobian, columns, iterations: 0, residual: distance(s, method, &end, &z) };
     let mut start = vec![0.0; t.by.len()];
     start.push(if o.upwards { 1.0 } else { -1.0 });
-    let mut tangent = t.tangent(&here, &start).ok_or(LpmError::Singular {
-        place: "first tangent of a branch",
-    })?;
+    let mut tangent = t.tangent(&here, &start).ok_or(LpmError::Singular { place: "first tangent of a branch" })?;
     let mut out = Branch {
         points: vec![t.report(model, &here)?],
         turning_points: Vec::new(),
@@ -324,11 +270,7 @@ fn trace<const N: usize>(
             let fold = t.turning(&here.u, &tangent, ds, &point, t.frequency_of(&next));
             let point = t.report(model, &fold)?;
             let after = out.points.len() - 1;
-            out.turning_points.push(TurningPoint {
-                point,
-                after,
-                is_maximum: t.frequency_of(&tangent) > 0.0,
-            });
+            out.turning_points.push(TurningPoint { point, after, is_maximum: t.frequency_of(&tangent) > 0.0 });
         }
         let outside = point.u.f < o.from || point.u.f > o.to;
         ds = match point.iterations {

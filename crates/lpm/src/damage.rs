@@ -62,11 +62,7 @@ impl DamageResponse {
 }
 
 fn range(x: &[f64]) -> f64 {
-    let (lo, hi) = x
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| {
-            (a.min(*v), b.max(*v))
-        });
+    let (lo, hi) = x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
     if lo <= hi { hi - lo } else { 0.0 }
 }
 
@@ -81,13 +77,7 @@ impl Model {
         options: &SteadyOptions,
     ) -> Result<SteadyResponse, LpmError> {
         let steady = self.steady_state(mesh_frequency, start, options)?;
-        let response = self.simulate(
-            mesh_frequency,
-            &steady.state,
-            cycles,
-            sampling,
-            &options.integration,
-        )?;
+        let response = self.simulate(mesh_frequency, &steady.state, cycles, sampling, &options.integration)?;
         Ok(SteadyResponse { steady, response })
     }
 
@@ -115,32 +105,15 @@ impl Model {
         let first = self.steady_state(mesh_frequency, start, options)?;
         let second = damaged.steady_state(mesh_frequency, &first.state, options)?;
         // Subharmonic motion of either needs more than one period of the damaged curves.
-        let cycles = lcm(
-            d * second.multiple.unwrap_or(1),
-            h * first.multiple.unwrap_or(1),
-        );
-        check(
-            cycles <= 10_000_000,
-            "mesh cycles",
-            cycles as f64,
-            "-",
-            "at most 1e7",
-        )?;
+        let cycles = lcm(d * second.multiple.unwrap_or(1), h * first.multiple.unwrap_or(1));
+        check(cycles <= 10_000_000, "mesh cycles", cycles as f64, "-", "at most 1e7")?;
         let run = |m: &Model, steady: Steady| -> Result<SteadyResponse, LpmError> {
-            let response = m.simulate(
-                mesh_frequency,
-                &steady.state,
-                cycles,
-                sampling,
-                &options.integration,
-            )?;
+            let response = m.simulate(mesh_frequency, &steady.state, cycles, sampling, &options.integration)?;
             Ok(SteadyResponse { steady, response })
         };
         let (healthy, damaged_response) = (run(self, first)?, run(damaged, second)?);
-        let difference = damage_induced(
-            &damaged_response.response.transmission_error,
-            &healthy.response.transmission_error,
-        )?;
+        let difference =
+            damage_induced(&damaged_response.response.transmission_error, &healthy.response.transmission_error)?;
         let static_difference = healthy
             .response
             .mesh_cycle
@@ -148,13 +121,7 @@ impl Model {
             .map(|&t| damaged.equilibrium(t).position[0] - self.equilibrium(t).position[0])
             .collect();
         let spectrum = Spectrum::of(&difference, cycles as f64 / mesh_frequency)?;
-        Ok(DamageResponse {
-            healthy,
-            damaged: damaged_response,
-            difference,
-            static_difference,
-            spectrum,
-        })
+        Ok(DamageResponse { healthy, damaged: damaged_response, difference, static_difference, spectrum })
     }
 }
 

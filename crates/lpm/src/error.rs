@@ -42,9 +42,7 @@ pub enum LpmError {
         needed: &'static str,
     },
     /// The mesh stiffness is not positive everywhere.
-    #[error(
-        "mesh stiffness falls to {value} N/m near mesh cycle {phase}: must be positive everywhere"
-    )]
+    #[error("mesh stiffness falls to {value} N/m near mesh cycle {phase}: must be positive everywhere")]
     StiffnessNotPositive {
         /// Least stiffness found (N/m).
         value: f64,
@@ -52,9 +50,7 @@ pub enum LpmError {
         phase: f64,
     },
     /// Drive and coast flanks overlap: the clearance is used up by the transmission error.
-    #[error(
-        "backlash {backlash} m is used up: the drive flanks touch at {drive} m near mesh cycle {phase}"
-    )]
+    #[error("backlash {backlash} m is used up: the drive flanks touch at {drive} m near mesh cycle {phase}")]
     Jammed {
         /// Clearance along the line of action (m).
         backlash: f64,
@@ -126,14 +122,5 @@ pub(crate) fn check(
     unit: &'static str,
     allowed: &'static str,
 ) -> Result<f64, LpmError> {
-    if ok && value.is_finite() {
-        Ok(value)
-    } else {
-        Err(LpmError::OutOfRange {
-            quantity,
-            value,
-            unit,
-            allowed,
-        })
-    }
+    if ok && value.is_finite() { Ok(value) } else { Err(LpmError::OutOfRange { quantity, value, unit, allowed }) }
 }

@@ -53,23 +53,13 @@ impl Excitation {
         let period = a / gcd(a, b) * b;
         if period > MAX_PERIOD {
             let reason = "their common period is longer than 100000 mesh cycles";
-            return Err(LpmError::Period {
-                first: a,
-                second: b,
-                reason,
-            });
+            return Err(LpmError::Period { first: a, second: b, reason });
         }
         let r = mesh_stiffness.range();
         if !(r.min.is_finite() && r.min > 0.0) {
-            return Err(LpmError::StiffnessNotPositive {
-                value: r.min,
-                phase: r.min_phase,
-            });
+            return Err(LpmError::StiffnessNotPositive { value: r.min, phase: r.min_phase });
         }
-        let (stiffness, error) = (
-            mesh_stiffness.repeated(period / a)?,
-            transmission_error.repeated(period / b)?,
-        );
+        let (stiffness, error) = (mesh_stiffness.repeated(period / a)?, transmission_error.repeated(period / b)?);
         let mut ends: Vec<f64> = stiffness.kinks().into_iter().chain(error.kinks()).collect();
         ends.extend([0.0, period as f64]);
         ends.sort_by(f64::total_cmp);
@@ -85,20 +75,13 @@ impl Excitation {
                 Segment {
                     start,
                     end,
-                    max_step: stiffness
-                        .resolution(start, end, pieces.0)
-                        .min(error.resolution(start, end, pieces.1)),
+                    max_step: stiffness.resolution(start, end, pieces.0).min(error.resolution(start, end, pieces.1)),
                     stiffness: pieces.0,
                     error: pieces.1,
                 }
             })
             .collect();
-        Ok(Self {
-            stiffness,
-            error,
-            period,
-            segments,
-        })
+        Ok(Self { stiffness, error, period, segments })
     }
 
     /// Local mesh stiffness (N/m).
@@ -119,10 +102,7 @@ impl Excitation {
     /// The excitation held still at phase `tau`, as in an impulse test at standstill.
     pub fn frozen(&self, tau: f64) -> Result<Self, LpmError> {
         check(true, "phase", tau, "cycles", "finite")?;
-        Self::new(
-            &Curve::constant(self.stiffness.value(tau))?,
-            &Curve::constant(self.error.value(tau))?,
-        )
+        Self::new(&Curve::constant(self.stiffness.value(tau))?, &Curve::constant(self.error.value(tau))?)
     }
 
     pub(crate) fn segments(&self) -> &[Segment] {
@@ -131,32 +111,20 @@ impl Excitation {
 
     /// Segment that holds `tau` in `[0, period)`; the later one at a common end.
     pub(crate) fn segment_at(&self, tau: f64) -> usize {
-        self.segments
-            .partition_point(|s| s.end <= tau)
-            .min(self.segments.len() - 1)
+        self.segments.partition_point(|s| s.end <= tau).min(self.segments.len() - 1)
     }
 
     /// Stiffness and transmission error at `tau` seen from inside `segment`.
     #[inline]
     pub(crate) fn values(&self, segment: &Segment, tau: f64) -> (f64, f64) {
-        (
-            self.stiffness.value_within(tau, segment.stiffness),
-            self.error.value_within(tau, segment.error),
-        )
+        (self.stiffness.value_within(tau, segment.stiffness), self.error.value_within(tau, segment.error))
     }
 
     /// As [`Self::values`], with slopes per mesh cycle.
     pub(crate) fn point(&self, segment: &Segment, tau: f64) -> Point {
-        let (stiffness, stiffness_slope) = self
-            .stiffness
-            .value_and_slope_within(tau, segment.stiffness);
+        let (stiffness, stiffness_slope) = self.stiffness.value_and_slope_within(tau, segment.stiffness);
         let (error, error_slope) = self.error.value_and_slope_within(tau, segment.error);
-        Point {
-            stiffness,
-            stiffness_slope,
-            error,
-            error_slope,
-        }
+        Point { stiffness, stiffness_slope, error, error_slope }
     }
 }
 
@@ -172,11 +140,7 @@ mod tests {
     #[test]
     fn invariant_segments_cover_the_period() -> Result<(), LpmError> {
         let k = Curve::rectangular(5e8, 8e8, 0.7, 0.5)?;
-        let d = Curve::samples(
-            3,
-            &[1e-6, 2e-6, 4e-6, 3e-6, 2e-6, 2.5e-6, 1e-6],
-            Interpolation::Spline,
-        )?;
+        let d = Curve::samples(3, &[1e-6, 2e-6, 4e-6, 3e-6, 2e-6, 2.5e-6, 1e-6], Interpolation::Spline)?;
         let e = Excitation::new(&k, &d)?;
         assert_eq!(e.period(), 3);
         assert_eq!(e.segments().len(), 7); // two jumps per cycle and the start of the period
@@ -196,10 +160,7 @@ mod tests {
     fn extreme_negative_stiffness_is_refused() -> Result<(), LpmError> {
         let k = Curve::fourier(1e8, &[(1.1e8, 0.0)])?;
         let d = Curve::constant(1e-5)?;
-        assert!(matches!(
-            Excitation::new(&k, &d),
-            Err(LpmError::StiffnessNotPositive { .. })
-        ));
+        assert!(matches!(Excitation::new(&k, &d), Err(LpmError::StiffnessNotPositive { .. })));
         Ok(())
     }
 }

@@ -48,10 +48,7 @@ pub enum Stability {
 
 /// Classifies by the multiplier of largest modulus.
 pub fn stability(multipliers: &[Multiplier]) -> Stability {
-    match multipliers
-        .iter()
-        .max_by(|a, b| a.modulus().total_cmp(&b.modulus()))
-    {
+    match multipliers.iter().max_by(|a, b| a.modulus().total_cmp(&b.modulus())) {
         Some(m) if m.modulus() > 1.0 => match (m.im == 0.0, m.re > 0.0) {
             (true, true) => Stability::Saddle,
             (true, false) => Stability::Flip,
@@ -64,11 +61,7 @@ pub fn stability(multipliers: &[Multiplier]) -> Stability {
 impl Model {
     /// Multipliers of the pair *in permanent contact* (no contact loss, so the load does not matter) at
     /// `mesh_frequency` (Hz) over one period of the excitation: the parametric stability of small vibrations.
-    pub fn parametric_multipliers(
-        &self,
-        mesh_frequency: f64,
-        options: &Options,
-    ) -> Result<Vec<Multiplier>, LpmError> {
+    pub fn parametric_multipliers(&self, mesh_frequency: f64, options: &Options) -> Result<Vec<Multiplier>, LpmError> {
         // Same stiffness, no load, no transmission error, nothing to leave: the zero solution stays in contact.
         let mut pair: GearPair = *self.pair();
         (pair.pinion.torque, pair.gear.torque, pair.backlash) = (0.0, 0.0, None);
@@ -101,41 +94,25 @@ pub(crate) fn multipliers<const N: usize>(
         let disc = 0.25 * (a - d) * (a - d) + b * c;
         if disc < 0.0 {
             let im = (-disc).sqrt();
-            vec![
-                Multiplier { re: half, im },
-                Multiplier { re: half, im: -im },
-            ]
+            vec![Multiplier { re: half, im }, Multiplier { re: half, im: -im }]
         } else {
             let large = half + disc.sqrt().copysign(half);
             let small = if large == 0.0 { 0.0 } else { det / large };
-            vec![
-                Multiplier { re: large, im: 0.0 },
-                Multiplier { re: small, im: 0.0 },
-            ]
+            vec![Multiplier { re: large, im: 0.0 }, Multiplier { re: small, im: 0.0 }]
         }
     } else {
         let m = DMatrix::from_fn(n, n, entry);
         if !m.iter().all(|v| v.is_finite()) {
-            return Err(LpmError::Singular {
-                place: "period map",
-            });
+            return Err(LpmError::Singular { place: "period map" });
         }
-        let schur =
-            nalgebra::Schur::try_new(m, f64::EPSILON, 10_000).ok_or(LpmError::Singular {
-                place: "eigenvalues of the period map",
-            })?;
-        schur
-            .complex_eigenvalues()
-            .iter()
-            .map(|c| Multiplier { re: c.re, im: c.im })
-            .collect()
+        let schur = nalgebra::Schur::try_new(m, f64::EPSILON, 10_000)
+            .ok_or(LpmError::Singular { place: "eigenvalues of the period map" })?;
+        schur.complex_eigenvalues().iter().map(|c| Multiplier { re: c.re, im: c.im }).collect()
     };
     found.sort_by(|a, b| b.modulus().total_cmp(&a.modulus()));
     if found.iter().all(|m| m.modulus().is_finite()) {
         Ok(found)
     } else {
-        Err(LpmError::Singular {
-            place: "period map",
-        })
+        Err(LpmError::Singular { place: "period map" })
     }
 }

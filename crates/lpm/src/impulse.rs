@@ -46,26 +46,13 @@ impl Model {
         options: &Options,
     ) -> Result<Option<ImpulseTest>, LpmError> {
         check(impulse != 0.0, "impulse", impulse, "N s", "not zero")?;
-        check(
-            (2..=100_000).contains(&periods),
-            "natural periods",
-            periods as f64,
-            "-",
-            "between 2 and 100000",
-        )?;
+        check((2..=100_000).contains(&periods), "natural periods", periods as f64, "-", "between 2 and 100000")?;
         let still = self.with_excitation(&self.excitation().frozen(tau)?)?;
-        let frequency = still
-            .natural_frequencies(0.0)
-            .first()
-            .copied()
-            .unwrap_or(1.0);
+        let frequency = still.natural_frequencies(0.0).first().copied().unwrap_or(1.0);
         let rest = still.equilibrium(0.0);
         let mut start = rest;
         start.velocity[0] += impulse / self.pair().effective_mass();
-        let sampling = Sampling {
-            per_cycle: SAMPLES,
-            energy: false,
-        };
+        let sampling = Sampling { per_cycle: SAMPLES, energy: false };
         let response = still.simulate(frequency, &start, periods, &sampling, options)?;
         let peaks = maxima(&response, rest.position[0]);
         let (Some(first), Some(last)) = (peaks.first(), peaks.last()) else {
@@ -79,13 +66,7 @@ impl Model {
         let decrement = (first.1 / last.1).ln() / n;
         let damping_ratio = decrement / TAU.hypot(decrement);
         let natural_frequency = damped_frequency / (1.0 - damping_ratio * damping_ratio).sqrt();
-        Ok(Some(ImpulseTest {
-            natural_frequency,
-            damped_frequency,
-            damping_ratio,
-            maxima: peaks.len(),
-            response,
-        }))
+        Ok(Some(ImpulseTest { natural_frequency, damped_frequency, damping_ratio, maxima: peaks.len(), response }))
     }
 }
 
@@ -102,11 +83,7 @@ fn maxima(r: &Response, level: f64) -> Vec<(f64, f64)> {
         let rise = x[i + 1] - x[i];
         let (c2, c3) = (3.0 * rise - 2.0 * d0 - d1, d0 + d1 - 2.0 * rise);
         let disc = (c2 * c2 - 3.0 * c3 * d0).max(0.0).sqrt();
-        let u = if c2 < 0.0 {
-            d0 / (disc - c2)
-        } else {
-            -(c2 + disc) / (3.0 * c3)
-        };
+        let u = if c2 < 0.0 { d0 / (disc - c2) } else { -(c2 + disc) / (3.0 * c3) };
         let height = x[i] + u * (d0 + u * (c2 + u * c3)) - level;
         let keep = height > 1e-4 * found.first().map_or(0.0, |p| p.1) && height > 0.0;
         if u.is_finite() && keep {
@@ -120,13 +97,7 @@ fn maxima(r: &Response, level: f64) -> Vec<(f64, f64)> {
 
 /// Mesh average of a quantity `one` at one pair and `two` at two pairs in contact, by contact ratio between 1 and 2 (D4.3).
 pub fn mesh_average(one: f64, two: f64, contact_ratio: f64) -> Result<f64, LpmError> {
-    check(
-        (1.0..=2.0).contains(&contact_ratio),
-        "contact ratio",
-        contact_ratio,
-        "-",
-        "between 1 and 2",
-    )?;
+    check((1.0..=2.0).contains(&contact_ratio), "contact ratio", contact_ratio, "-", "between 1 and 2")?;
     Ok((contact_ratio - 1.0) * two + (2.0 - contact_ratio) * one)
 }
 
@@ -148,16 +119,8 @@ mod tests {
             let t = m.impulse_test(0.05, 1e-3, 20, &Options::default())?;
             let t = t.ok_or(LpmError::Singular { place: "test" })?;
             let f = (533e6 / pair.effective_mass()).sqrt() / TAU;
-            assert!(
-                (t.natural_frequency / f - 1.0).abs() < 1e-5,
-                "{ratio}: {} {f}",
-                t.natural_frequency
-            );
-            assert!(
-                (t.damping_ratio - ratio).abs() < 1e-5,
-                "{ratio}: {}",
-                t.damping_ratio
-            );
+            assert!((t.natural_frequency / f - 1.0).abs() < 1e-5, "{ratio}: {} {f}", t.natural_frequency);
+            assert!((t.damping_ratio - ratio).abs() < 1e-5, "{ratio}: {}", t.damping_ratio);
         }
         Ok(())
     }

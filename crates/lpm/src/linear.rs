@@ -3,17 +3,11 @@
 use crate::error::LpmError;
 
 /// Solves `a x = b` by elimination with row pivoting; `a` in rows. At most seven unknowns here.
-pub(crate) fn solve(
-    mut a: Vec<Vec<f64>>,
-    mut b: Vec<f64>,
-    place: &'static str,
-) -> Result<Vec<f64>, LpmError> {
+pub(crate) fn solve(mut a: Vec<Vec<f64>>, mut b: Vec<f64>, place: &'static str) -> Result<Vec<f64>, LpmError> {
     let n = b.len();
     let size = a.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs()));
     for col in 0..n {
-        let pivot = (col..n)
-            .max_by(|&i, &j| a[i][col].abs().total_cmp(&a[j][col].abs()))
-            .unwrap_or(col);
+        let pivot = (col..n).max_by(|&i, &j| a[i][col].abs().total_cmp(&a[j][col].abs())).unwrap_or(col);
         let p = a[pivot][col].abs();
         if !p.is_finite() || p <= 1e-14 * size {
             return Err(LpmError::Singular { place });
@@ -35,11 +29,7 @@ pub(crate) fn solve(
         let known: f64 = (row + 1..n).map(|j| a[row][j] * b[j]).sum();
         b[row] = (b[row] - known) / a[row][row];
     }
-    if b.iter().all(|v| v.is_finite()) {
-        Ok(b)
-    } else {
-        Err(LpmError::Singular { place })
-    }
+    if b.iter().all(|v| v.is_finite()) { Ok(b) } else { Err(LpmError::Singular { place }) }
 }
 
 #[cfg(test)]
@@ -48,15 +38,8 @@ mod tests {
 
     #[test]
     fn analytic_small_systems() -> Result<(), LpmError> {
-        let x = solve(
-            vec![
-                vec![0.0, 2.0, 1.0],
-                vec![1.0, -1.0, 0.0],
-                vec![3.0, 0.0, 4.0],
-            ],
-            vec![7.0, -1.0, 15.0],
-            "t",
-        )?;
+        let x =
+            solve(vec![vec![0.0, 2.0, 1.0], vec![1.0, -1.0, 0.0], vec![3.0, 0.0, 4.0]], vec![7.0, -1.0, 15.0], "t")?;
         for (a, b) in x.iter().zip([1.0, 2.0, 3.0]) {
             assert!((a - b).abs() < 1e-14);
         }

@@ -143,12 +143,7 @@ impl GearPair {
             support_stiffness: f64::MAX,
             support_damping: 0.0,
         };
-        Self {
-            pinion: gear,
-            gear,
-            mesh_damping,
-            ..Self::table_3_2(Input::Prescribed)
-        }
+        Self { pinion: gear, gear, mesh_damping, ..Self::table_3_2(Input::Prescribed) }
     }
 
     /// Moving mass `m_e` of the mesh coordinate (kg), Eq. (3.3d).
@@ -165,10 +160,7 @@ impl GearPair {
         let (rp, rg, jp, jg) = self.radii_and_inertias();
         match self.input {
             Input::Prescribed => self.gear.torque / rg,
-            Input::Free => {
-                (rp * jg * self.pinion.torque + rg * jp * self.gear.torque)
-                    / (rp * rp * jg + rg * rg * jp)
-            }
+            Input::Free => (rp * jg * self.pinion.torque + rg * jp * self.gear.torque) / (rp * rp * jg + rg * rg * jp),
         }
     }
 
@@ -178,71 +170,24 @@ impl GearPair {
     }
 
     fn radii_and_inertias(&self) -> (f64, f64, f64, f64) {
-        (
-            self.pinion.base_radius,
-            self.gear.base_radius,
-            self.pinion.inertia,
-            self.gear.inertia,
-        )
+        (self.pinion.base_radius, self.gear.base_radius, self.pinion.inertia, self.gear.inertia)
     }
 
     /// Checks every number against its range.
     pub fn validate(&self) -> Result<(), LpmError> {
         for g in [&self.pinion, &self.gear] {
-            check(
-                g.base_radius > 0.0,
-                "base radius",
-                g.base_radius,
-                "m",
-                "positive",
-            )?;
+            check(g.base_radius > 0.0, "base radius", g.base_radius, "m", "positive")?;
             check(g.mass > 0.0, "mass", g.mass, "kg", "positive")?;
-            check(
-                g.inertia > 0.0,
-                "moment of inertia",
-                g.inertia,
-                "kg m^2",
-                "positive",
-            )?;
-            check(
-                g.torque >= 0.0,
-                "torque",
-                g.torque,
-                "N m",
-                "zero or positive (loading the drive flanks)",
-            )?;
-            check(
-                g.support_stiffness > 0.0,
-                "support stiffness",
-                g.support_stiffness,
-                "N/m",
-                "positive",
-            )?;
-            check(
-                g.support_damping >= 0.0,
-                "support damping",
-                g.support_damping,
-                "N s/m",
-                "zero or positive",
-            )?;
+            check(g.inertia > 0.0, "moment of inertia", g.inertia, "kg m^2", "positive")?;
+            check(g.torque >= 0.0, "torque", g.torque, "N m", "zero or positive (loading the drive flanks)")?;
+            check(g.support_stiffness > 0.0, "support stiffness", g.support_stiffness, "N/m", "positive")?;
+            check(g.support_damping >= 0.0, "support damping", g.support_damping, "N s/m", "zero or positive")?;
         }
-        check(
-            self.mesh_damping >= 0.0,
-            "mesh damping",
-            self.mesh_damping,
-            "N s/m",
-            "zero or positive",
-        )?;
+        check(self.mesh_damping >= 0.0, "mesh damping", self.mesh_damping, "N s/m", "zero or positive")?;
         if let Some(b) = self.backlash {
             check(b > 0.0, "backlash", b, "m", "positive")?;
         }
-        check(
-            self.effective_mass() > 0.0,
-            "effective mass",
-            self.effective_mass(),
-            "kg",
-            "positive",
-        )?;
+        check(self.effective_mass() > 0.0, "effective mass", self.effective_mass(), "kg", "positive")?;
         Ok(())
     }
 }
@@ -283,26 +228,17 @@ pub(crate) use with_system;
 
 impl Model {
     /// Joins pair and excitation. Fails on numbers out of range and where backlash is smaller than the drive-side deflection.
-    pub fn new(
-        pair: &GearPair,
-        excitation: &Excitation,
-        supports: Supports,
-    ) -> Result<Self, LpmError> {
+    pub fn new(pair: &GearPair, excitation: &Excitation, supports: Supports) -> Result<Self, LpmError> {
         pair.validate()?;
         let kind = match supports {
             Supports::Integrated => Kind::Three(System::three(pair, excitation)),
             Supports::Eliminated => {
-                let compliance =
-                    1.0 / pair.pinion.support_stiffness + 1.0 / pair.gear.support_stiffness;
+                let compliance = 1.0 / pair.pinion.support_stiffness + 1.0 / pair.gear.support_stiffness;
                 Kind::One(System::one(pair, excitation, compliance))
             }
             Supports::Rigid => Kind::One(System::one(pair, excitation, 0.0)),
         };
-        let model = Self {
-            pair: *pair,
-            supports,
-            kind,
-        };
+        let model = Self { pair: *pair, supports, kind };
         with_system!(model, s => s.check_backlash())?;
         Ok(model)
     }
@@ -361,16 +297,8 @@ mod tests {
         let free = GearPair::table_3_2(Input::Free);
         let held = GearPair::table_3_2(Input::Prescribed);
         // Eq. (3.3d) worked by hand from the printed values.
-        assert!(
-            (free.effective_mass() - 0.50885).abs() < 1e-5,
-            "{}",
-            free.effective_mass()
-        );
-        assert!(
-            (held.effective_mass() - 2.40140).abs() < 1e-4,
-            "{}",
-            held.effective_mass()
-        );
+        assert!((free.effective_mass() - 0.50885).abs() < 1e-5, "{}", free.effective_mass());
+        assert!((held.effective_mass() - 2.40140).abs() < 1e-4, "{}", held.effective_mass());
         assert!((held.mean_force() - 9292.1).abs() < 0.1);
         assert!((free.mean_force() - 9290.2).abs() < 0.5);
     }
@@ -382,16 +310,10 @@ mod tests {
         let one = Model::new(&pair, &e, Supports::Rigid)?;
         let f = (533e6_f64 / pair.effective_mass()).sqrt() / std::f64::consts::TAU;
         assert!((one.natural_frequencies(0.3)[0] / f - 1.0).abs() < 1e-12);
-        assert!(
-            (f - 2371.0).abs() < 1.0,
-            "the dissertation's 2370.73 Hz, by its stiffness: {f}"
-        );
+        assert!((f - 2371.0).abs() < 1.0, "the dissertation's 2370.73 Hz, by its stiffness: {f}");
         let three = Model::new(&pair, &e, Supports::Integrated)?;
         let all = three.natural_frequencies(0.0);
-        assert!(
-            (all[0] / f - 1.0).abs() < 2e-3 && all[0] < f,
-            "series compliance lowers it: {all:?}"
-        );
+        assert!((all[0] / f - 1.0).abs() < 2e-3 && all[0] < f, "series compliance lowers it: {all:?}");
         assert!((all[2] / ((1e12 / 0.7294_f64).sqrt() / std::f64::consts::TAU) - 1.0).abs() < 1e-3);
         // Supports without stiffness: two free masses and one mesh mode of the reduced mass.
         pair.pinion.support_stiffness = 1e-3;

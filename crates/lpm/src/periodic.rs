@@ -39,12 +39,7 @@ pub struct ShootingOptions {
 impl Default for ShootingOptions {
     /// Residual 1e-9 with integration at 1e-10, 30 iterations, the period of the excitation.
     fn default() -> Self {
-        Self {
-            integration: Options::with_tolerance(1e-10),
-            tolerance: 1e-9,
-            max_iterations: 30,
-            multiple: 1,
-        }
+        Self { integration: Options::with_tolerance(1e-10), tolerance: 1e-9, max_iterations: 30, multiple: 1 }
     }
 }
 
@@ -53,27 +48,9 @@ impl ShootingOptions {
     pub fn validate(&self) -> Result<(), LpmError> {
         self.integration.validate()?;
         let t = self.tolerance;
-        check(
-            (1e-13..=1e-3).contains(&t),
-            "shooting tolerance",
-            t,
-            "-",
-            "between 1e-13 and 1e-3",
-        )?;
-        check(
-            self.max_iterations >= 1,
-            "iterations",
-            self.max_iterations as f64,
-            "-",
-            "at least 1",
-        )?;
-        check(
-            (1..=10_000).contains(&self.multiple),
-            "period multiple",
-            self.multiple as f64,
-            "-",
-            "1 to 10000",
-        )?;
+        check((1e-13..=1e-3).contains(&t), "shooting tolerance", t, "-", "between 1e-13 and 1e-3")?;
+        check(self.max_iterations >= 1, "iterations", self.max_iterations as f64, "-", "at least 1")?;
+        check((1..=10_000).contains(&self.multiple), "period multiple", self.multiple as f64, "-", "1 to 10000")?;
         Ok(())
     }
 }
@@ -140,13 +117,7 @@ pub struct SteadyOptions {
 impl Default for SteadyOptions {
     /// Change below 1e-7, 20000 mesh cycles, subharmonics to order 8, polished.
     fn default() -> Self {
-        Self {
-            integration: Options::default(),
-            tolerance: 1e-7,
-            max_cycles: 20_000,
-            max_multiple: 8,
-            polish: true,
-        }
+        Self { integration: Options::default(), tolerance: 1e-7, max_cycles: 20_000, max_multiple: 8, polish: true }
     }
 }
 
@@ -155,27 +126,9 @@ impl SteadyOptions {
     pub fn validate(&self) -> Result<(), LpmError> {
         self.integration.validate()?;
         let t = self.tolerance;
-        check(
-            (1e-12..=0.1).contains(&t),
-            "steady-state tolerance",
-            t,
-            "-",
-            "between 1e-12 and 0.1",
-        )?;
-        check(
-            self.max_cycles >= 2,
-            "mesh cycles",
-            self.max_cycles as f64,
-            "-",
-            "at least 2",
-        )?;
-        check(
-            (1..=64).contains(&self.max_multiple),
-            "period multiple",
-            self.max_multiple as f64,
-            "-",
-            "1 to 64",
-        )?;
+        check((1e-12..=0.1).contains(&t), "steady-state tolerance", t, "-", "between 1e-12 and 0.1")?;
+        check(self.max_cycles >= 2, "mesh cycles", self.max_cycles as f64, "-", "at least 2")?;
+        check((1..=64).contains(&self.max_multiple), "period multiple", self.max_multiple as f64, "-", "1 to 64")?;
         Ok(())
     }
 }
@@ -207,12 +160,7 @@ impl Model {
     }
 
     /// Finds the periodic solution near `guess` (state at phase 0) by shooting.
-    pub fn shoot(
-        &self,
-        mesh_frequency: f64,
-        guess: &State,
-        options: &ShootingOptions,
-    ) -> Result<Orbit, LpmError> {
+    pub fn shoot(&self, mesh_frequency: f64, guess: &State, options: &ShootingOptions) -> Result<Orbit, LpmError> {
         options.validate()?;
         with_system!(self, s => shoot(s, mesh_frequency, s.import(guess)?, options))
     }
@@ -222,17 +170,11 @@ impl Model {
 /// implicit one lets them follow the mesh force and damps their ringing, so that after a period they depend on the choice
 /// of steps more than on where they started.
 pub(crate) fn resolved<const N: usize>(s: &System<N>, method: Method) -> Vec<usize> {
-    (0..2 * N)
-        .filter(|i| method.resolves_all() || !s.is_stiff(i % N))
-        .collect()
+    (0..2 * N).filter(|i| method.resolves_all() || !s.is_stiff(i % N)).collect()
 }
 
 /// `target` with the components that are not resolved taken from `source`.
-pub(crate) fn follow<const N: usize>(
-    resolved: &[usize],
-    target: &Vector<N>,
-    source: &Vector<N>,
-) -> Vector<N> {
+pub(crate) fn follow<const N: usize>(resolved: &[usize], target: &Vector<N>, source: &Vector<N>) -> Vector<N> {
     let mut r = *source;
     for &i in resolved {
         r.set(i, target.get(i));
@@ -241,17 +183,9 @@ pub(crate) fn follow<const N: usize>(
 }
 
 /// Largest difference in natural units over the resolved components.
-pub(crate) fn distance<const N: usize>(
-    s: &System<N>,
-    method: Method,
-    a: &Vector<N>,
-    b: &Vector<N>,
-) -> f64 {
+pub(crate) fn distance<const N: usize>(s: &System<N>, method: Method, a: &Vector<N>, b: &Vector<N>) -> f64 {
     let counts = |i: usize| method.resolves_all() || !s.is_stiff(i % N);
-    (0..2 * N)
-        .filter(|i| counts(*i))
-        .map(|i| (a.get(i) - b.get(i)).abs() / s.unit(i))
-        .fold(0.0, f64::max)
+    (0..2 * N).filter(|i| counts(*i)).map(|i| (a.get(i) - b.get(i)).abs() / s.unit(i)).fold(0.0, f64::max)
 }
 
 /// Relative change to which an integration repeats itself.
@@ -279,12 +213,7 @@ fn steady<const N: usize>(
     let (mut least, mut stale) = (f64::INFINITY, 0);
     let mut previous = 1.0;
     let done = |state: &Vector<N>, multiple, periods, residual| {
-        Ok(Steady {
-            state: s.export(state),
-            multiple,
-            periods,
-            residual,
-        })
+        Ok(Steady { state: s.export(state), multiple, periods, residual })
     };
     let max_periods = o.max_cycles.div_ceil(s.excitation().period()).max(2);
     for n in 1..=max_periods {
@@ -293,36 +222,24 @@ fn steady<const N: usize>(
         run.advance(&mut cursor, period, |_| {})?;
         history.insert(0, cursor.z);
         history.truncate(2 * o.max_multiple + 1);
-        let change = |m: usize| {
-            history
-                .get(m)
-                .map_or(f64::INFINITY, |z| distance(s, run.method, &cursor.z, z))
-        };
+        let change = |m: usize| history.get(m).map_or(f64::INFINITY, |z| distance(s, run.method, &cursor.z, z));
         // A multiple must hold twice in a row, and no smaller one may: a slow transient is not a subharmonic.
         let twice = |m: usize| {
-            let before = history
-                .get(m)
-                .zip(history.get(2 * m))
-                .map_or(f64::INFINITY, |(a, b)| distance(s, run.method, a, b));
+            let before =
+                history.get(m).zip(history.get(2 * m)).map_or(f64::INFINITY, |(a, b)| distance(s, run.method, a, b));
             change(m).max(before)
         };
         let one = change(1);
         if one < tolerance {
             return done(&cursor.z, Some(1), n, one);
         }
-        (least, stale) = if one < 0.5 * least {
-            (one, 0)
-        } else {
-            (least, stale + 1)
-        };
+        (least, stale) = if one < 0.5 * least { (one, 0) } else { (least, stale + 1) };
         // Changes that no longer fall and do not add up, near the noise of the integration: this is as steady as it gets.
         let scatter = || (1..history.len()).all(|m| change(m) < 4.0 * one);
         if stale >= STALE_PERIODS && one < 30.0 * noise && one < 1e-3 && scatter() {
             return done(&cursor.z, Some(1), n, one);
         }
-        if let Some(m) =
-            (2..=o.max_multiple).find(|&m| twice(m) < tolerance && one > 100.0 * tolerance)
-        {
+        if let Some(m) = (2..=o.max_multiple).find(|&m| twice(m) < tolerance && one > 100.0 * tolerance) {
             return done(&cursor.z, Some(m), n, change(m));
         }
         // Where a period is long and damping ends the transient within it, waiting is the shorter way.
@@ -345,9 +262,7 @@ fn steady<const N: usize>(
             }
         }
     }
-    let residual = history
-        .get(1)
-        .map_or(f64::INFINITY, |z| distance(s, run.method, &cursor.z, z));
+    let residual = history.get(1).map_or(f64::INFINITY, |z| distance(s, run.method, &cursor.z, z));
     done(&cursor.z, None, max_periods, residual)
 }
 
@@ -359,20 +274,12 @@ pub(crate) fn period_map<const N: usize>(
     by: &[usize],
 ) -> Result<(Vector<N>, Vec<Vector<N>>), LpmError> {
     let mut c = Cursor::with_tangents(0.0, z, by);
-    run.advance(
-        &mut c,
-        (multiple * run.system.excitation().period()) as f64,
-        |_| {},
-    )?;
+    run.advance(&mut c, (multiple * run.system.excitation().period()) as f64, |_| {})?;
     Ok((c.z, c.tangents))
 }
 
 /// Rows of `dP/dz - 1` over the components `by`, in natural units.
-pub(crate) fn newton_matrix<const N: usize>(
-    s: &System<N>,
-    by: &[usize],
-    columns: &[Vector<N>],
-) -> Vec<Vec<f64>> {
+pub(crate) fn newton_matrix<const N: usize>(s: &System<N>, by: &[usize], columns: &[Vector<N>]) -> Vec<Vec<f64>> {
     by.iter()
         .map(|&i| {
             by.iter()
@@ -405,10 +312,7 @@ fn shoot<const N: usize>(
             break;
         }
         iterations += 1;
-        let rhs = by
-            .iter()
-            .map(|&i| (z.get(i) - end.get(i)) / s.unit(i))
-            .collect();
+        let rhs = by.iter().map(|&i| (z.get(i) - end.get(i)) / s.unit(i)).collect();
         let Ok(step) = linear::solve(newton_matrix(s, &by, &columns), rhs, "shooting") else {
             status = OrbitStatus::Singular;
             break;

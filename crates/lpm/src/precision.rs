@@ -27,10 +27,7 @@ pub const SUPPORT_STIFFNESSES: [f64; 4] = [1e8, 1e10, 1e12, 1e14];
 const FREQUENCY: f64 = 1800.0;
 /// Mesh cycles of a run.
 const CYCLES: usize = 8;
-const SAMPLING: Sampling = Sampling {
-    per_cycle: 50,
-    energy: false,
-};
+const SAMPLING: Sampling = Sampling { per_cycle: 50, energy: false };
 
 /// One run of the study.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,20 +71,12 @@ fn problems() -> Result<Vec<Problem>, LpmError> {
         &Curve::rectangular(533e6, 806e6, 0.2, 0.64)?,
         &Curve::rectangular(11.8e-6, 18.3e-6, 0.84, 0.36)?,
     )?;
-    let pair = GearPair {
-        mesh_damping: 3434.0,
-        ..GearPair::table_3_2(Input::Prescribed)
-    };
-    let at = |x: f64| State {
-        position: [x, 0.0, 0.0],
-        ..State::default()
-    };
+    let pair = GearPair { mesh_damping: 3434.0, ..GearPair::table_3_2(Input::Prescribed) };
+    let at = |x: f64| State { position: [x, 0.0, 0.0], ..State::default() };
     let mut all = Vec::new();
-    for (name, excitation, x) in [
-        ("smooth", &smooth, 15e-6),
-        ("contact loss", &smooth, 60e-6),
-        ("rectangular wave", &jumps, 60e-6),
-    ] {
+    for (name, excitation, x) in
+        [("smooth", &smooth, 15e-6), ("contact loss", &smooth, 60e-6), ("rectangular wave", &jumps, 60e-6)]
+    {
         all.push(Problem {
             name: name.into(),
             stiffness: None,
@@ -112,10 +101,7 @@ fn problems() -> Result<Vec<Problem>, LpmError> {
 }
 
 fn run(model: &Model, start: &State, method: Method, tolerance: f64) -> Result<Response, LpmError> {
-    let options = Options {
-        method: Some(method),
-        ..Options::with_tolerance(tolerance)
-    };
+    let options = Options { method: Some(method), ..Options::with_tolerance(tolerance) };
     model.simulate(FREQUENCY, start, CYCLES, &SAMPLING, &options)
 }
 
@@ -123,29 +109,13 @@ fn run(model: &Model, start: &State, method: Method, tolerance: f64) -> Result<R
 ///
 /// Newmark's method at tight tolerances takes very many steps; runs of it below 1e-9 are left out.
 pub fn work_precision(tolerances: &[f64], seconds: f64) -> Result<Vec<WorkPrecision>, LpmError> {
-    check(
-        seconds >= 0.0,
-        "time per run",
-        seconds,
-        "s",
-        "zero or positive",
-    )?;
+    check(seconds >= 0.0, "time per run", seconds, "s", "zero or positive")?;
     for &t in tolerances {
-        check(
-            (1e-12..=0.1).contains(&t),
-            "tolerance",
-            t,
-            "-",
-            "between 1e-12 and 0.1",
-        )?;
+        check((1e-12..=0.1).contains(&t), "tolerance", t, "-", "between 1e-12 and 0.1")?;
     }
     let mut rows = Vec::new();
     for p in problems()? {
-        let best = if p.model.coordinates() == 1 {
-            Method::Magnus
-        } else {
-            Method::DormandPrince
-        };
+        let best = if p.model.coordinates() == 1 { Method::Magnus } else { Method::DormandPrince };
         let reference = run(&p.model, &p.start, best, 1e-13)?;
         let mut entries: Vec<(&Model, State, Method)> = Method::ALL
             .into_iter()
@@ -187,11 +157,7 @@ pub fn work_precision(tolerances: &[f64], seconds: f64) -> Result<Vec<WorkPrecis
 }
 
 fn difference(a: &Response, b: &Response) -> f64 {
-    let largest = a
-        .transmission_error
-        .iter()
-        .zip(&b.transmission_error)
-        .map(|(x, y)| (x - y).abs())
-        .fold(0.0, f64::max);
+    let largest =
+        a.transmission_error.iter().zip(&b.transmission_error).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
     largest / b.peak_to_peak()
 }

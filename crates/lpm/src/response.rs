@@ -43,10 +43,7 @@ pub struct Sampling {
 impl Default for Sampling {
     /// 100 samples per mesh cycle, no energy balance.
     fn default() -> Self {
-        Self {
-            per_cycle: 100,
-            energy: false,
-        }
+        Self { per_cycle: 100, energy: false }
     }
 }
 
@@ -135,20 +132,8 @@ fn simulate<const N: usize>(
     options: &Options,
 ) -> Result<Response, LpmError> {
     let n = sampling.per_cycle;
-    check(
-        (4..=100_000).contains(&n),
-        "samples per mesh cycle",
-        n as f64,
-        "-",
-        "between 4 and 100000",
-    )?;
-    check(
-        (1..=10_000_000).contains(&cycles),
-        "mesh cycles",
-        cycles as f64,
-        "-",
-        "between 1 and 1e7",
-    )?;
+    check((4..=100_000).contains(&n), "samples per mesh cycle", n as f64, "-", "between 4 and 100000")?;
+    check((1..=10_000_000).contains(&cycles), "mesh cycles", cycles as f64, "-", "between 1 and 1e7")?;
     let run = Runner::new(s, options, mesh_frequency)?;
     let z0 = s.import(start)?;
     let mut cursor = Cursor::new(0.0, z0);
@@ -165,9 +150,7 @@ fn simulate<const N: usize>(
 }
 
 fn stored_energy<const N: usize>(s: &System<N>, z: &Vector<N>) -> f64 {
-    (0..N)
-        .map(|i| 0.5 * (s.mass[i] * z.v[i] * z.v[i] + s.stiffness[i] * z.q[i] * z.q[i]))
-        .sum()
+    (0..N).map(|i| 0.5 * (s.mass[i] * z.v[i] * z.v[i] + s.stiffness[i] * z.q[i] * z.q[i])).sum()
 }
 
 struct Recorder<'a, 'b, const N: usize> {
@@ -197,13 +180,7 @@ impl<'a, 'b, const N: usize> Recorder<'a, 'b, N> {
             energy: energy.then(EnergyBalance::default),
             stats: Stats::default(),
         };
-        Self {
-            run,
-            per_cycle,
-            total,
-            next: 0,
-            out,
-        }
+        Self { run, per_cycle, total, next: 0, out }
     }
 
     fn state(&self, r: &Record<N>, theta: f64) -> Vector<N> {
@@ -211,9 +188,7 @@ impl<'a, 'b, const N: usize> Recorder<'a, 'b, N> {
             return r.before;
         }
         let (s, m, f) = (self.run.system, self.run.method, self.run.frequency);
-        Step::prepare(s, m, r.phase, r.segment, r.tau, theta * r.dtau, f)
-            .apply(s, &r.before)
-            .0
+        Step::prepare(s, m, r.phase, r.segment, r.tau, theta * r.dtau, f).apply(s, &r.before).0
     }
 
     fn take(&mut self, r: &Record<N>) {
@@ -232,19 +207,11 @@ impl<'a, 'b, const N: usize> Recorder<'a, 'b, N> {
         if r.phase != ContactPhase::Drive {
             match self.out.separations.last_mut() {
                 Some(last) if last.phase == r.phase && lo - last.end < 1e-11 => last.end = hi,
-                _ => self.out.separations.push(Interval {
-                    start: lo,
-                    end: hi,
-                    phase: r.phase,
-                }),
+                _ => self.out.separations.push(Interval { start: lo, end: hi, phase: r.phase }),
             }
         }
         if let Some(to) = r.next {
-            self.out.events.push(Event {
-                mesh_cycle: hi,
-                from: r.phase,
-                to,
-            });
+            self.out.events.push(Event { mesh_cycle: hi, from: r.phase, to });
         }
         self.add_energy(r);
     }
@@ -254,11 +221,7 @@ impl<'a, 'b, const N: usize> Recorder<'a, 'b, N> {
         let co = s.coefs(r.phase, r.segment, tau);
         let force = s.mesh_force(&co, z);
         let support = |i: usize, reaction: f64| {
-            if i < N {
-                s.stiffness[i] * z.q[i] + s.damping[i] * z.v[i]
-            } else {
-                reaction
-            }
+            if i < N { s.stiffness[i] * z.q[i] + s.damping[i] * z.v[i] } else { reaction }
         };
         let o = &mut self.out;
         o.mesh_cycle.push(at);
@@ -339,40 +302,25 @@ impl Response {
     /// Root mean square of the transmission error about its mean (m).
     pub fn rms(&self) -> f64 {
         let m = self.mean();
-        let squares: f64 = self
-            .transmission_error
-            .iter()
-            .map(|x| (x - m) * (x - m))
-            .sum();
+        let squares: f64 = self.transmission_error.iter().map(|x| (x - m) * (x - m)).sum();
         (squares / self.transmission_error.len() as f64).sqrt()
     }
 
     /// Largest mesh force over the mean mesh force; 0 without load.
     pub fn dynamic_factor(&self) -> f64 {
         let top = self.mesh_force.iter().copied().fold(0.0, f64::max);
-        if self.mean_force > 0.0 {
-            top / self.mean_force
-        } else {
-            0.0
-        }
+        if self.mean_force > 0.0 { top / self.mean_force } else { 0.0 }
     }
 
     /// Fraction of the run without drive contact.
     pub fn separated_fraction(&self) -> f64 {
-        let apart = self
-            .separations
-            .iter()
-            .fold(0.0, |sum, i| sum + (i.end - i.start));
+        let apart = self.separations.iter().fold(0.0, |sum, i| sum + (i.end - i.start));
         apart / (self.mesh_cycle.len() as f64 / self.per_cycle())
     }
 
     /// Force on one tooth pair (N), from the curve of its share of the mesh force (0 to 1 over the mesh phase).
     pub fn pair_force(&self, share: &Curve) -> Vec<f64> {
-        self.mesh_cycle
-            .iter()
-            .zip(&self.mesh_force)
-            .map(|(t, f)| share.value(*t) * f)
-            .collect()
+        self.mesh_cycle.iter().zip(&self.mesh_force).map(|(t, f)| share.value(*t) * f).collect()
     }
 
     /// Amplitude spectrum of the transmission error.
@@ -383,10 +331,7 @@ impl Response {
     fn extreme(&self, sign: f64) -> Extreme {
         let (x, v, t) = (&self.transmission_error, &self.velocity, &self.mesh_cycle);
         let spacing = 1.0 / self.per_cycle();
-        let mut best = Extreme {
-            value: f64::NEG_INFINITY,
-            mesh_cycle: 0.0,
-        };
+        let mut best = Extreme { value: f64::NEG_INFINITY, mesh_cycle: 0.0 };
         let mut take = |value: f64, mesh_cycle: f64| {
             if value > best.value {
                 best = Extreme { value, mesh_cycle };
@@ -404,23 +349,13 @@ impl Response {
                 let rise = sign * (x1 - x[i]);
                 let (c2, c3) = (3.0 * rise - 2.0 * d0 - d1, d0 + d1 - 2.0 * rise);
                 let disc = (c2 * c2 - 3.0 * c3 * d0).max(0.0).sqrt();
-                let u = if c2 < 0.0 {
-                    d0 / (disc - c2)
-                } else {
-                    -(c2 + disc) / (3.0 * c3)
-                };
+                let u = if c2 < 0.0 { d0 / (disc - c2) } else { -(c2 + disc) / (3.0 * c3) };
                 if (0.0..=1.0).contains(&u) {
-                    take(
-                        sign * x[i] + u * (d0 + u * (c2 + u * c3)),
-                        t[i] + u * spacing,
-                    );
+                    take(sign * x[i] + u * (d0 + u * (c2 + u * c3)), t[i] + u * spacing);
                 }
             }
         }
-        Extreme {
-            value: sign * best.value,
-            ..best
-        }
+        Extreme { value: sign * best.value, ..best }
     }
 }
 

@@ -28,46 +28,26 @@ impl Spectrum {
         check(duration > 0.0, "duration", duration, "s", "positive")?;
         let n = samples.len();
         if n < 2 {
-            return Err(LpmError::Length {
-                what: "samples of a spectrum",
-                found: n,
-                needed: "at least 2",
-            });
+            return Err(LpmError::Length { what: "samples of a spectrum", found: n, needed: "at least 2" });
         }
         let fft = RealFftPlanner::<f64>::new().plan_fft_forward(n);
         let (mut input, mut output) = (samples.to_vec(), fft.make_output_vec());
-        fft.process(&mut input, &mut output)
-            .map_err(|_| LpmError::Singular {
-                place: "Fourier transform",
-            })?;
+        fft.process(&mut input, &mut output).map_err(|_| LpmError::Singular { place: "Fourier transform" })?;
         let lines = output.len();
         let doubled = |i: usize| {
-            if i == 0 || (n.is_multiple_of(2) && i == lines - 1) {
-                1.0
-            } else {
-                2.0
-            }
+            if i == 0 || (n.is_multiple_of(2) && i == lines - 1) { 1.0 } else { 2.0 }
         };
         Ok(Self {
             frequency: (0..lines).map(|i| i as f64 / duration).collect(),
-            amplitude: output
-                .iter()
-                .enumerate()
-                .map(|(i, c)| doubled(i) * c.norm() / n as f64)
-                .collect(),
-            phase: output
-                .iter()
-                .map(|c| if c.norm() > 0.0 { c.arg() } else { 0.0 })
-                .collect(),
+            amplitude: output.iter().enumerate().map(|(i, c)| doubled(i) * c.norm() / n as f64).collect(),
+            phase: output.iter().map(|c| if c.norm() > 0.0 { c.arg() } else { 0.0 }).collect(),
         })
     }
 
     /// Amplitude at the line nearest to `frequency` (Hz).
     pub fn amplitude_at(&self, frequency: f64) -> f64 {
         let step = self.frequency.get(1).copied().unwrap_or(1.0);
-        let line = (frequency / step)
-            .round()
-            .clamp(0.0, (self.amplitude.len() - 1) as f64) as usize;
+        let line = (frequency / step).round().clamp(0.0, (self.amplitude.len() - 1) as f64) as usize;
         self.amplitude[line]
     }
 
@@ -106,11 +86,7 @@ pub fn damage_induced(damaged: &[f64], healthy: &[f64]) -> Result<Vec<f64>, LpmE
             needed: "a divisor of the number of damaged samples",
         });
     }
-    Ok(damaged
-        .iter()
-        .zip(healthy.iter().cycle())
-        .map(|(d, h)| d - h)
-        .collect())
+    Ok(damaged.iter().zip(healthy.iter().cycle()).map(|(d, h)| d - h).collect())
 }
 
 #[cfg(test)]
@@ -121,9 +97,8 @@ mod tests {
     fn analytic_amplitudes_and_phases_of_known_tones() -> Result<(), LpmError> {
         for n in [96usize, 97] {
             let t = |j: usize| TAU * j as f64 / n as f64;
-            let x: Vec<f64> = (0..n)
-                .map(|j| 1.5 + 2.0 * (3.0 * t(j) + 0.4).cos() - 0.25 * (7.0 * t(j)).sin())
-                .collect();
+            let x: Vec<f64> =
+                (0..n).map(|j| 1.5 + 2.0 * (3.0 * t(j) + 0.4).cos() - 0.25 * (7.0 * t(j)).sin()).collect();
             let s = Spectrum::of(&x, 0.5)?;
             assert!((s.amplitude_at(0.0) - 1.5).abs() < 1e-13);
             assert!((s.amplitude_at(6.0) - 2.0).abs() < 1e-13);

@@ -24,11 +24,7 @@ pub struct SweepOptions {
 impl Default for SweepOptions {
     /// Default waits and sampling; 50 periods where motion is not periodic.
     fn default() -> Self {
-        Self {
-            steady: SteadyOptions::default(),
-            sampling: Sampling::default(),
-            aperiodic_periods: 50,
-        }
+        Self { steady: SteadyOptions::default(), sampling: Sampling::default(), aperiodic_periods: 50 }
     }
 }
 
@@ -84,11 +80,7 @@ pub struct SweepPoint {
 
 impl Model {
     /// Steady states at `mesh_frequencies` (Hz) in the order given, the first from static equilibrium, each further one from the last.
-    pub fn sweep(
-        &self,
-        mesh_frequencies: &[f64],
-        options: &SweepOptions,
-    ) -> Result<Vec<SweepPoint>, LpmError> {
+    pub fn sweep(&self, mesh_frequencies: &[f64], options: &SweepOptions) -> Result<Vec<SweepPoint>, LpmError> {
         self.sweep_from(&self.equilibrium(0.0), mesh_frequencies, options)
     }
 
@@ -100,11 +92,7 @@ impl Model {
         options: &SweepOptions,
     ) -> Result<Vec<SweepPoint>, LpmError> {
         if mesh_frequencies.is_empty() {
-            return Err(LpmError::Length {
-                what: "mesh frequencies of a sweep",
-                found: 0,
-                needed: "at least 1",
-            });
+            return Err(LpmError::Length { what: "mesh frequencies of a sweep", found: 0, needed: "at least 1" });
         }
         let mut state = *start;
         mesh_frequencies
@@ -113,13 +101,8 @@ impl Model {
                 let steady = self.steady_state(f, &state, &options.steady)?;
                 let periods = steady.multiple.unwrap_or(options.aperiodic_periods.max(1));
                 let cycles = periods * self.excitation().period();
-                let response = self.simulate(
-                    f,
-                    &steady.state,
-                    cycles,
-                    &options.sampling,
-                    &options.steady.integration,
-                )?;
+                let response =
+                    self.simulate(f, &steady.state, cycles, &options.sampling, &options.steady.integration)?;
                 state = response.end;
                 Ok(SweepPoint {
                     mesh_frequency: f,
@@ -138,8 +121,6 @@ pub fn frequencies(from: f64, to: f64, count: usize) -> Vec<f64> {
     match count {
         0 => Vec::new(),
         1 => vec![from],
-        _ => (0..count)
-            .map(|i| from + (to - from) * i as f64 / (count - 1) as f64)
-            .collect(),
+        _ => (0..count).map(|i| from + (to - from) * i as f64 / (count - 1) as f64).collect(),
     }
 }

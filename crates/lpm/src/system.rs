@@ -50,10 +50,7 @@ pub(crate) struct Vector<const N: usize> {
 }
 
 impl<const N: usize> Vector<N> {
-    pub const ZERO: Self = Self {
-        q: [0.0; N],
-        v: [0.0; N],
-    };
+    pub const ZERO: Self = Self { q: [0.0; N], v: [0.0; N] };
 
     /// Component `i` of (q, v).
     pub fn get(&self, i: usize) -> f64 {
@@ -86,11 +83,7 @@ pub(crate) struct Coefs {
 impl Coefs {
     /// The homogeneous part, which carries differences of solutions.
     pub fn homogeneous(self) -> Self {
-        Self {
-            p: 0.0,
-            load: 0.0,
-            ..self
-        }
+        Self { p: 0.0, load: 0.0, ..self }
     }
 }
 
@@ -116,15 +109,7 @@ pub(crate) struct System<const N: usize> {
 
 impl System<1> {
     pub fn one(pair: &GearPair, excitation: &Excitation, compliance: f64) -> Self {
-        Self::build(
-            [pair.effective_mass()],
-            [0.0],
-            [0.0],
-            [1.0],
-            pair,
-            excitation,
-            compliance,
-        )
+        Self::build([pair.effective_mass()], [0.0], [0.0], [1.0], pair, excitation, compliance)
     }
 }
 
@@ -154,20 +139,9 @@ impl<const N: usize> System<N> {
         compliance: f64,
     ) -> Self {
         let force = pair.mean_force();
-        let (kr, dr) = (
-            excitation.mesh_stiffness().range(),
-            excitation.transmission_error().range(),
-        );
-        let scale = (force / kr.min)
-            .max(dr.max - dr.min)
-            .max(dr.max.abs())
-            .max(dr.min.abs());
-        let inverse_mass = mass
-            .iter()
-            .zip(&stiffness)
-            .filter(|(_, s)| **s < kr.max)
-            .map(|(m, _)| 1.0 / m)
-            .sum::<f64>();
+        let (kr, dr) = (excitation.mesh_stiffness().range(), excitation.transmission_error().range());
+        let scale = (force / kr.min).max(dr.max - dr.min).max(dr.max.abs()).max(dr.min.abs());
+        let inverse_mass = mass.iter().zip(&stiffness).filter(|(_, s)| **s < kr.max).map(|(m, _)| 1.0 / m).sum::<f64>();
         Self {
             mass,
             damping,
@@ -175,11 +149,7 @@ impl<const N: usize> System<N> {
             w,
             force,
             mesh_damping: pair.mesh_damping,
-            damping_apart: if pair.damping_when_apart {
-                pair.mesh_damping
-            } else {
-                0.0
-            },
+            damping_apart: if pair.damping_when_apart { pair.mesh_damping } else { 0.0 },
             compliance,
             separation: pair.separation,
             backlash: pair.backlash,
@@ -207,12 +177,7 @@ impl<const N: usize> System<N> {
     #[inline]
     pub fn coefs(&self, phase: ContactPhase, segment: &Segment, tau: f64) -> Coefs {
         if phase == ContactPhase::Apart {
-            return Coefs {
-                k: 0.0,
-                c: self.damping_apart,
-                p: 0.0,
-                load: self.force,
-            };
+            return Coefs { k: 0.0, c: self.damping_apart, p: 0.0, load: self.force };
         }
         let (k, error) = self.excitation.values(segment, tau);
         let lever = 1.0 / (1.0 + k * self.compliance);
@@ -220,12 +185,7 @@ impl<const N: usize> System<N> {
             (ContactPhase::Coast, Some(b)) => k * b,
             _ => self.force - k * error,
         };
-        Coefs {
-            k: k * lever,
-            c: self.mesh_damping * lever * lever,
-            p: p * lever,
-            load: self.force,
-        }
+        Coefs { k: k * lever, c: self.mesh_damping * lever * lever, p: p * lever, load: self.force }
     }
 
     /// `w . a`.
@@ -256,9 +216,7 @@ impl<const N: usize> System<N> {
         let mut a = [0.0; N];
         for i in 0..N {
             let load = if i == 0 { co.load } else { 0.0 };
-            a[i] =
-                (load - self.damping[i] * z.v[i] - self.stiffness[i] * z.q[i] - self.w[i] * force)
-                    / self.mass[i];
+            a[i] = (load - self.damping[i] * z.v[i] - self.stiffness[i] * z.q[i] - self.w[i] * force) / self.mass[i];
         }
         a
     }
@@ -272,8 +230,7 @@ impl<const N: usize> System<N> {
         let (mut wr, mut ww) = (0.0, 0.0);
         for i in 0..N {
             let load = if i == 0 { co.load } else { 0.0 };
-            let r =
-                load - self.damping[i] * z.v[i] - self.stiffness[i] * z.q[i] - self.w[i] * force;
+            let r = load - self.damping[i] * z.v[i] - self.stiffness[i] * z.q[i] - self.w[i] * force;
             let d = self.mass[i] + g * (self.damping[i] + g * self.stiffness[i]);
             a[i] = r / d;
             inverse_w[i] = self.w[i] / d;
@@ -301,14 +258,10 @@ impl<const N: usize> System<N> {
         for i in 1..N {
             if all {
                 // In units of the support's own give, small on stiff supports: its force must be right.
-                m = m
-                    .max(e.q[i].abs() / self.unit(i))
-                    .max(e.v[i].abs() / self.unit(N + i));
+                m = m.max(e.q[i].abs() / self.unit(i)).max(e.v[i].abs() / self.unit(N + i));
             } else if !self.is_stiff(i) {
                 let own = (self.stiffness[i] / self.mass[i]).sqrt();
-                m = m
-                    .max(e.q[i].abs() / self.scale)
-                    .max(e.v[i].abs() / (self.scale * self.omega.max(own)));
+                m = m.max(e.q[i].abs() / self.scale).max(e.v[i].abs() / (self.scale * self.omega.max(own)));
             }
         }
         if e.is_finite() { m } else { f64::INFINITY }
@@ -317,39 +270,24 @@ impl<const N: usize> System<N> {
     /// Natural scale of component `i` of (q, v).
     pub fn unit(&self, i: usize) -> f64 {
         let c = i % N;
-        let own = if c == 0 {
-            self.omega
-        } else {
-            (self.stiffness[c] / self.mass[c]).sqrt()
-        };
+        let own = if c == 0 { self.omega } else { (self.stiffness[c] / self.mass[c]).sqrt() };
         let length = if c == 0 {
             self.scale
         } else {
             self.scale * (self.mass[0] * self.omega * self.omega / self.stiffness[c]).min(1.0)
         };
-        if i < N {
-            length
-        } else {
-            length * own.max(self.omega)
-        }
+        if i < N { length } else { length * own.max(self.omega) }
     }
 
     /// Distance of the mesh deflection from the drive flanks (m; positive in contact) and its rate (m/s).
-    pub fn drive_gap(
-        &self,
-        segment: &Segment,
-        tau: f64,
-        mesh_frequency: f64,
-        z: &Vector<N>,
-    ) -> (f64, f64) {
+    pub fn drive_gap(&self, segment: &Segment, tau: f64, mesh_frequency: f64, z: &Vector<N>) -> (f64, f64) {
         let (delta, rate) = (self.along_mesh(&z.q), self.along_mesh(&z.v));
         match self.separation {
             Separation::DeflectionVanishes => (delta, rate),
             Separation::ForceVanishes => {
                 let e = self.excitation.point(segment, tau);
                 let limit = e.error - self.force / e.stiffness;
-                let slope =
-                    e.error_slope + self.force * e.stiffness_slope / (e.stiffness * e.stiffness);
+                let slope = e.error_slope + self.force * e.stiffness_slope / (e.stiffness * e.stiffness);
                 (delta - limit, rate - mesh_frequency * slope)
             }
         }
@@ -357,25 +295,14 @@ impl<const N: usize> System<N> {
 
     /// Distance from the coast flanks (m; positive when clear of them) and its rate; `None` without a coast side.
     pub fn coast_gap(&self, z: &Vector<N>) -> Option<(f64, f64)> {
-        self.backlash
-            .map(|b| (self.along_mesh(&z.q) + b, self.along_mesh(&z.v)))
+        self.backlash.map(|b| (self.along_mesh(&z.q) + b, self.along_mesh(&z.v)))
     }
 
     /// Phase of a state. On a boundary the direction of motion decides, then drive contact.
-    pub fn phase(
-        &self,
-        segment: &Segment,
-        tau: f64,
-        mesh_frequency: f64,
-        z: &Vector<N>,
-    ) -> ContactPhase {
+    pub fn phase(&self, segment: &Segment, tau: f64, mesh_frequency: f64, z: &Vector<N>) -> ContactPhase {
         let inside = |(g, rate): (f64, f64)| {
             let rounding = 1e-15 * self.scale;
-            if g.abs() > rounding {
-                g > 0.0
-            } else {
-                rate >= 0.0
-            }
+            if g.abs() > rounding { g > 0.0 } else { rate >= 0.0 }
         };
         if inside(self.drive_gap(segment, tau, mesh_frequency, z)) {
             return ContactPhase::Drive;
@@ -403,19 +330,14 @@ impl<const N: usize> System<N> {
             let own = if i == j { self.stiffness[i] } else { 0.0 };
             (own + k * self.w[i] * self.w[j]) / (self.mass[i] * self.mass[j]).sqrt()
         });
-        let mut f: Vec<f64> = matrix
-            .symmetric_eigenvalues()
-            .iter()
-            .map(|l| l.max(0.0).sqrt() / TAU)
-            .collect();
+        let mut f: Vec<f64> = matrix.symmetric_eigenvalues().iter().map(|l| l.max(0.0).sqrt() / TAU).collect();
         f.sort_by(f64::total_cmp);
         f
     }
 
     pub fn damping_ratio(&self, tau: f64) -> f64 {
         let k = self.excitation.mesh_stiffness().value(tau);
-        let series: f64 =
-            self.compliance + self.stiffness.iter().skip(1).map(|s| 1.0 / s).sum::<f64>();
+        let series: f64 = self.compliance + self.stiffness.iter().skip(1).map(|s| 1.0 / s).sum::<f64>();
         let lever = 1.0 / (1.0 + k * series);
         self.mesh_damping * lever * lever / (2.0 * (k * lever * self.mass[0]).sqrt())
     }
@@ -430,11 +352,7 @@ impl<const N: usize> System<N> {
                 let phase = s.start + (s.end - s.start) * f64::from(i) / 32.0;
                 let drive = -self.drive_gap(s, phase, 0.0, &Vector::ZERO).0;
                 if drive <= -backlash {
-                    return Err(LpmError::Jammed {
-                        backlash,
-                        drive,
-                        phase,
-                    });
+                    return Err(LpmError::Jammed { backlash, drive, phase });
                 }
             }
         }
@@ -457,19 +375,8 @@ impl<const N: usize> System<N> {
         if z.is_finite() {
             Ok(z)
         } else {
-            let value = s
-                .position
-                .iter()
-                .chain(&s.velocity)
-                .copied()
-                .find(|v| !v.is_finite())
-                .unwrap_or(f64::NAN);
-            Err(LpmError::OutOfRange {
-                quantity: "initial state",
-                value,
-                unit: "m, m/s",
-                allowed: "finite",
-            })
+            let value = s.position.iter().chain(&s.velocity).copied().find(|v| !v.is_finite()).unwrap_or(f64::NAN);
+            Err(LpmError::OutOfRange { quantity: "initial state", value, unit: "m, m/s", allowed: "finite" })
         }
     }
 }

@@ -1,39 +1,21 @@
 //! Periodic solutions: shooting, waiting, continuation, sweeps.
 
 use lpm::{
-    BranchEnd, ContinuationOptions, Curve, Excitation, GearPair, Input, LpmError, Method, Model,
-    Options, OrbitStatus, Sampling, ShootingOptions, Stability, State, SteadyOptions, Supports,
-    SweepOptions, frequencies,
+    BranchEnd, ContinuationOptions, Curve, Excitation, GearPair, Input, LpmError, Method, Model, Options, OrbitStatus,
+    Sampling, ShootingOptions, Stability, State, SteadyOptions, Supports, SweepOptions, frequencies,
 };
 use std::f64::consts::TAU;
 
 /// Constant stiffness, one harmonic of transmission error: a linear oscillator while contact lasts.
-fn linear(
-    mass: f64,
-    k: f64,
-    damping: f64,
-    force: f64,
-    mean: f64,
-    amplitude: f64,
-) -> Result<Model, LpmError> {
-    let e = Excitation::new(
-        &Curve::constant(k)?,
-        &Curve::fourier(mean, &[(amplitude, 0.0)])?,
-    )?;
-    Model::new(
-        &GearPair::oscillator(mass, damping, force),
-        &e,
-        Supports::Rigid,
-    )
+fn linear(mass: f64, k: f64, damping: f64, force: f64, mean: f64, amplitude: f64) -> Result<Model, LpmError> {
+    let e = Excitation::new(&Curve::constant(k)?, &Curve::fourier(mean, &[(amplitude, 0.0)])?)?;
+    Model::new(&GearPair::oscillator(mass, damping, force), &e, Supports::Rigid)
 }
 
 fn pair_model(damped_flight: bool, supports: Supports) -> Result<Model, LpmError> {
     let k = Curve::trapezoidal(534e6, 824e6, 0.2, 0.64, 0.08)?;
     let d = Curve::trapezoidal(18.3e-6, 11.8e-6, 0.2, 0.64, 0.08)?;
-    let pair = GearPair {
-        damping_when_apart: damped_flight,
-        ..GearPair::table_3_2(Input::Prescribed)
-    };
+    let pair = GearPair { damping_when_apart: damped_flight, ..GearPair::table_3_2(Input::Prescribed) };
     Model::new(&pair, &Excitation::new(&k, &d)?, supports)
 }
 
@@ -51,10 +33,7 @@ fn analytic_linear_response_amplitude_and_phase() -> Result<(), LpmError> {
             f,
             &orbit.state,
             1,
-            &Sampling {
-                per_cycle: 400,
-                energy: false,
-            },
+            &Sampling { per_cycle: 400, energy: false },
             &Options::with_tolerance(1e-10),
         )?;
         assert!(r.separations.is_empty());
@@ -63,10 +42,7 @@ fn analytic_linear_response_amplitude_and_phase() -> Result<(), LpmError> {
         assert!((0.5 * r.peak_to_peak() / want - 1.0).abs() < 1e-6, "{f} Hz");
         assert!((r.mean() - 15e-6).abs() < 1e-6 * want);
         let decay = (-0.5 * c / mass / f).exp();
-        assert!(
-            (orbit.multipliers[0].modulus() - decay).abs() < 1e-7,
-            "{f} Hz"
-        );
+        assert!((orbit.multipliers[0].modulus() - decay).abs() < 1e-7, "{f} Hz");
     }
     Ok(())
 }
@@ -85,15 +61,9 @@ fn invariant_waiting_and_shooting_find_the_same_orbit() -> Result<(), LpmError> 
         assert_eq!(a.multiple, Some(1));
         let b = m.shoot(f, &a.state, &ShootingOptions::default())?;
         assert!(b.is_attractor());
-        assert!(
-            (a.state.position[0] - b.state.position[0]).abs() < 1e-6 * 18e-6,
-            "{f} Hz"
-        );
+        assert!((a.state.position[0] - b.state.position[0]).abs() < 1e-6 * 18e-6, "{f} Hz");
         let polished = m.steady_state(f, &m.equilibrium(0.0), &SteadyOptions::default())?;
-        assert!(
-            (polished.state.position[0] - b.state.position[0]).abs() < 1e-6 * 18e-6,
-            "{f} Hz"
-        );
+        assert!((polished.state.position[0] - b.state.position[0]).abs() < 1e-6 * 18e-6, "{f} Hz");
         assert!(polished.periods <= a.periods);
     }
     Ok(())
@@ -105,21 +75,11 @@ fn invariant_sweeps_lie_on_the_branch_of_the_continuation() -> Result<(), LpmErr
     let up = frequencies(200.0, 4000.0, 77);
     let down: Vec<f64> = up.iter().rev().copied().collect();
     let start = m.steady_state(4050.0, &m.equilibrium(0.0), &SteadyOptions::default())?;
-    let o = ContinuationOptions {
-        from: 150.0,
-        to: 4060.0,
-        ..Default::default()
-    };
+    let o = ContinuationOptions { from: 150.0, to: 4060.0, ..Default::default() };
     let branch = m.continuation(4050.0, &start.state, &o)?;
     assert_eq!(branch.end, BranchEnd::RangeLeft);
     for speeds in [&up, &down] {
-        for p in m.sweep(
-            speeds,
-            &SweepOptions {
-                sampling: o.sampling,
-                ..Default::default()
-            },
-        )? {
+        for p in m.sweep(speeds, &SweepOptions { sampling: o.sampling, ..Default::default() })? {
             assert_eq!(p.multiple, Some(1));
             let near = branch
                 .at(p.mesh_frequency)
@@ -128,11 +88,7 @@ fn invariant_sweeps_lie_on_the_branch_of_the_continuation() -> Result<(), LpmErr
                 .map(|(pp, _)| (pp / p.measure.peak_to_peak - 1.0).abs())
                 .fold(f64::INFINITY, f64::min);
             // Linear interpolation between branch points; exact agreement is checked by shooting below.
-            assert!(
-                near < 0.03,
-                "{} Hz: nearest branch solution off by {near}",
-                p.mesh_frequency
-            );
+            assert!(near < 0.03, "{} Hz: nearest branch solution off by {near}", p.mesh_frequency);
             let orbit = m.shoot(p.mesh_frequency, &p.state, &ShootingOptions::default())?;
             assert!(orbit.is_attractor());
             assert!((orbit.state.position[0] - p.state.position[0]).abs() < 1e-5 * 18e-6);
@@ -143,17 +99,8 @@ fn invariant_sweeps_lie_on_the_branch_of_the_continuation() -> Result<(), LpmErr
     assert_eq!(middle.len(), 3, "{middle:?}");
     assert_eq!(middle.iter().filter(|(_, s)| *s).count(), 2);
     for t in &branch.turning_points {
-        let nearest = t
-            .point
-            .multipliers
-            .iter()
-            .map(|m| (m.re - 1.0).hypot(m.im))
-            .fold(f64::INFINITY, f64::min);
-        assert!(
-            nearest < 1e-3,
-            "a multiplier is +1 at a turning point: {:?}",
-            t.point.multipliers
-        );
+        let nearest = t.point.multipliers.iter().map(|m| (m.re - 1.0).hypot(m.im)).fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1e-3, "a multiplier is +1 at a turning point: {:?}", t.point.multipliers);
     }
     Ok(())
 }
@@ -163,19 +110,10 @@ fn invariant_unstable_branch_is_left_in_time() -> Result<(), LpmError> {
     // A saddle found by continuation repeats for one period and is left after many.
     let m = pair_model(true, Supports::Eliminated)?;
     let start = m.steady_state(3000.0, &m.equilibrium(0.0), &SteadyOptions::default())?;
-    let o = ContinuationOptions {
-        from: 1500.0,
-        to: 3050.0,
-        ..Default::default()
-    };
+    let o = ContinuationOptions { from: 1500.0, to: 3050.0, ..Default::default() };
     let branch = m.continuation(3000.0, &start.state, &o)?;
-    let saddle = branch
-        .points
-        .iter()
-        .find(|p| p.stability == Stability::Saddle && p.mesh_frequency > 1900.0);
-    let saddle = saddle.ok_or(LpmError::Singular {
-        place: "no saddle on the branch",
-    })?;
+    let saddle = branch.points.iter().find(|p| p.stability == Stability::Saddle && p.mesh_frequency > 1900.0);
+    let saddle = saddle.ok_or(LpmError::Singular { place: "no saddle on the branch" })?;
     let mut nudged = saddle.state;
     nudged.position[0] += 1e-9;
     let end = m.steady_state(saddle.mesh_frequency, &nudged, &SteadyOptions::default())?;
@@ -188,17 +126,8 @@ fn invariant_full_and_eliminated_supports_have_the_same_turning_points() -> Resu
     let fold = |supports| -> Result<Vec<f64>, LpmError> {
         let m = pair_model(true, supports)?;
         let start = m.steady_state(2500.0, &m.equilibrium(0.0), &SteadyOptions::default())?;
-        let o = ContinuationOptions {
-            from: 1500.0,
-            to: 2510.0,
-            max_step: 0.2,
-            ..Default::default()
-        };
-        Ok(m.continuation(2500.0, &start.state, &o)?
-            .turning_points
-            .iter()
-            .map(|t| t.point.mesh_frequency)
-            .collect())
+        let o = ContinuationOptions { from: 1500.0, to: 2510.0, max_step: 0.2, ..Default::default() };
+        Ok(m.continuation(2500.0, &start.state, &o)?.turning_points.iter().map(|t| t.point.mesh_frequency).collect())
     };
     let (one, three) = (fold(Supports::Eliminated)?, fold(Supports::Integrated)?);
     assert_eq!(one.len(), 2);
@@ -210,35 +139,17 @@ fn invariant_full_and_eliminated_supports_have_the_same_turning_points() -> Resu
 }
 
 #[test]
-fn analytic_period_doubling_in_the_principal_tongue_is_found_as_multiple_two()
--> Result<(), LpmError> {
+fn analytic_period_doubling_in_the_principal_tongue_is_found_as_multiple_two() -> Result<(), LpmError> {
     // Stiffness modulated at twice the natural frequency by more than four times the damping ratio; growth ends by contact loss.
     let (mass, k0) = (2.4, 600e6_f64);
     let f = 2.0 * (k0 / mass).sqrt() / TAU;
-    let e = Excitation::new(
-        &Curve::fourier(k0, &[(0.3 * k0, 0.0)])?,
-        &Curve::constant(15e-6)?,
-    )?;
+    let e = Excitation::new(&Curve::fourier(k0, &[(0.3 * k0, 0.0)])?, &Curve::constant(15e-6)?)?;
     let damping = 2.0 * 0.02 * (k0 * mass).sqrt();
-    let m = Model::new(
-        &GearPair::oscillator(mass, damping, 9292.0),
-        &e,
-        Supports::Rigid,
-    )?;
-    let start = State {
-        position: [15.5e-6, 0.0, 0.0],
-        ..State::default()
-    };
+    let m = Model::new(&GearPair::oscillator(mass, damping, 9292.0), &e, Supports::Rigid)?;
+    let start = State { position: [15.5e-6, 0.0, 0.0], ..State::default() };
     let s = m.steady_state(f, &start, &SteadyOptions::default())?;
     assert_eq!(s.multiple, Some(2), "{s:?}");
-    let o = m.shoot(
-        f,
-        &s.state,
-        &ShootingOptions {
-            multiple: 2,
-            ..Default::default()
-        },
-    )?;
+    let o = m.shoot(f, &s.state, &ShootingOptions { multiple: 2, ..Default::default() })?;
     assert!(o.is_attractor(), "{o:?}");
     let once = m.shoot(f, &m.equilibrium(0.0), &ShootingOptions::default())?;
     assert_eq!(once.stability(), Stability::Flip);
@@ -252,10 +163,7 @@ fn peer_dissertation_d7_3_two_solutions_from_about_1700_to_2300_hz() -> Result<(
     // linear mesh; and a trapezium with levels of the finite-element curves. Neither is the FE/CM curve, and speeds were
     // stepped by 50 Hz, hence the windows.
     let wave = {
-        let pair = GearPair {
-            damping_when_apart: true,
-            ..GearPair::table_3_2(Input::Prescribed)
-        };
+        let pair = GearPair { damping_when_apart: true, ..GearPair::table_3_2(Input::Prescribed) };
         let f0 = pair.mean_force();
         let k = Curve::rectangular(533e6, 806e6, 0.18, 0.64)?;
         let d = Curve::rectangular(f0 / 533e6, f0 / 806e6, 0.18, 0.64)?;
@@ -263,11 +171,7 @@ fn peer_dissertation_d7_3_two_solutions_from_about_1700_to_2300_hz() -> Result<(
     };
     for m in [wave, pair_model(true, Supports::Eliminated)?] {
         let start = m.steady_state(3000.0, &m.equilibrium(0.0), &SteadyOptions::default())?;
-        let o = ContinuationOptions {
-            from: 1450.0,
-            to: 3050.0,
-            ..Default::default()
-        };
+        let o = ContinuationOptions { from: 1450.0, to: 3050.0, ..Default::default() };
         let b = m.continuation(3000.0, &start.state, &o)?;
         let [(from, to)] = b.coexistence()[..] else {
             return Err(LpmError::Length {
@@ -285,9 +189,7 @@ fn peer_dissertation_d7_3_two_solutions_from_about_1700_to_2300_hz() -> Result<(
                 .windows(2)
                 .map(|w| {
                     (
-                        (w[1].measure.peak_to_peak / w[0].measure.peak_to_peak)
-                            .ln()
-                            .abs(),
+                        (w[1].measure.peak_to_peak / w[0].measure.peak_to_peak).ln().abs(),
                         w[0].mesh_frequency,
                         w[1].mesh_frequency,
                     )
@@ -325,23 +227,10 @@ fn regression_methods_agree_on_the_steady_state() -> Result<(), LpmError> {
     let m = pair_model(false, Supports::Rigid)?;
     let mut found = Vec::new();
     for method in Method::ALL {
-        let tolerance = if method == Method::Newmark {
-            1e-9
-        } else {
-            1e-10
-        };
-        let integration = Options {
-            method: Some(method),
-            ..Options::with_tolerance(tolerance)
-        };
-        let steady = m.steady_state(
-            2500.0,
-            &m.equilibrium(0.0),
-            &SteadyOptions {
-                integration,
-                ..Default::default()
-            },
-        )?;
+        let tolerance = if method == Method::Newmark { 1e-9 } else { 1e-10 };
+        let integration = Options { method: Some(method), ..Options::with_tolerance(tolerance) };
+        let steady =
+            m.steady_state(2500.0, &m.equilibrium(0.0), &SteadyOptions { integration, ..Default::default() })?;
         let r = m.simulate(2500.0, &steady.state, 1, &Sampling::default(), &integration)?;
         found.push(r.peak_to_peak());
     }

@@ -12,12 +12,7 @@ fn order_errors_fall_with_the_tolerance_on_every_problem() -> Result<(), LpmErro
         let [loose, _, tight] = triple else {
             continue;
         };
-        let what = format!(
-            "{} {:?} {}",
-            tight.problem,
-            tight.supports,
-            tight.method.name()
-        );
+        let what = format!("{} {:?} {}", tight.problem, tight.supports, tight.method.name());
         if tight.supports == Supports::Eliminated {
             continue; // model error
         }
@@ -31,9 +26,7 @@ fn order_errors_fall_with_the_tolerance_on_every_problem() -> Result<(), LpmErro
     }
     let steps = |method: Method, stiffness: f64| {
         let own = |r: &&WorkPrecision| {
-            r.method == method
-                && r.support_stiffness == Some(stiffness)
-                && r.supports == Supports::Integrated
+            r.method == method && r.support_stiffness == Some(stiffness) && r.supports == Supports::Integrated
         };
         rows.iter().filter(own).map(|r| r.steps).max().unwrap_or(0)
     };

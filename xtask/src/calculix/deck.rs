@@ -1,5 +1,6 @@
 //! Input deck, run and reaction moments. Units of the deck: mm, N, MPa.
 
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::process::Command;
 
@@ -41,7 +42,12 @@ pub fn run(deck: &Deck<'_>) -> anyhow::Result<Vec<f64>> {
     if moments.len() != deck.rotations.len() {
         let log = String::from_utf8_lossy(&output.stdout).into_owned();
         let tail: Vec<&str> = log.lines().rev().take(12).collect();
-        bail!("ccx solved {} of {} steps: {}", moments.len(), deck.rotations.len(), tail.into_iter().rev().collect::<Vec<_>>().join("\n"));
+        bail!(
+            "ccx solved {} of {} steps: {}",
+            moments.len(),
+            deck.rotations.len(),
+            tail.into_iter().rev().collect::<Vec<_>>().join("\n")
+        );
     }
     Ok(moments)
 }
@@ -75,10 +81,18 @@ impl Deck<'_> {
             first_element += mesh.elements.len();
         }
         for (material, name) in self.materials.iter().zip(names) {
-            writeln!(text, "*MATERIAL, NAME=M{name}\n*ELASTIC\n{:.9e}, {:.9e}", material.young_modulus * 1e-6, material.poisson_ratio)?;
+            writeln!(
+                text,
+                "*MATERIAL, NAME=M{name}\n*ELASTIC\n{:.9e}, {:.9e}",
+                material.young_modulus * 1e-6,
+                material.poisson_ratio
+            )?;
             writeln!(text, "*SOLID SECTION, ELSET=E{name}, MATERIAL=M{name}\n{:.9e}", self.facewidth * 1e3)?;
         }
-        writeln!(text, "*SURFACE INTERACTION, NAME=CONTACT\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{CONTACT_SLOPE:e}")?;
+        writeln!(
+            text,
+            "*SURFACE INTERACTION, NAME=CONTACT\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{CONTACT_SLOPE:e}"
+        )?;
         writeln!(text, "*CONTACT PAIR, INTERACTION=CONTACT, TYPE=SURFACE TO SURFACE\nSPINION, SWHEEL")?;
         writeln!(text, "*BOUNDARY\nBPINION, 1, 2, 0.")?;
         for rotation in self.rotations {
@@ -87,7 +101,14 @@ impl Deck<'_> {
             for &node in &self.meshes[1].bore {
                 let arm = self.meshes[1].nodes[node] - self.centre;
                 let moved = (turn * arm - arm) * 1e3;
-                writeln!(text, "{}, 1, 1, {:.12e}\n{}, 2, 2, {:.12e}", starts[1] + node, moved.x, starts[1] + node, moved.y)?;
+                writeln!(
+                    text,
+                    "{}, 1, 1, {:.12e}\n{}, 2, 2, {:.12e}",
+                    starts[1] + node,
+                    moved.x,
+                    starts[1] + node,
+                    moved.y
+                )?;
             }
             writeln!(text, "*NODE PRINT, NSET=BWHEEL\nRF\n*END STEP")?;
         }
@@ -107,12 +128,20 @@ impl Deck<'_> {
             let words: Vec<&str> = line.split_whitespace().collect();
             let (Some((_, moment)), [node, fx, fy, _]) = (tables.last_mut(), words.as_slice()) else { continue };
             let node: usize = node.parse().with_context(|| format!("result line {line:?}"))?;
-            ensure!(node >= offset && node - offset < self.meshes[1].nodes.len(), "reaction of node {node}, which is not the wheel's");
+            ensure!(
+                node >= offset && node - offset < self.meshes[1].nodes.len(),
+                "reaction of node {node}, which is not the wheel's"
+            );
             let arm = self.meshes[1].nodes[node - offset] - self.centre;
             *moment += arm.x * fy.parse::<f64>()? - arm.y * fx.parse::<f64>()?;
         }
-        // steps last one unit of time each
-        let is_end = |time: f64| (time - time.round()).abs() < 1e-6;
-        Ok(tables.into_iter().filter(|(time, _)| is_end(*time)).map(|(_, moment)| moment).collect())
+        // steps last one unit of time each; the last table at its end counts
+        let mut ends = BTreeMap::new();
+        for (time, moment) in tables {
+            if (time - time.round()).abs() < 1e-6 {
+                ends.insert(time.round() as u64, moment);
+            }
+        }
+        Ok(ends.into_values().collect())
     }
 }

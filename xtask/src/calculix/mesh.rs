@@ -23,8 +23,15 @@ pub struct TriangleMesh {
 #[derive(Clone, Copy)]
 enum Place {
     /// A piece of a tooth's outline: tooth, upper half, segment, parameters of the two ends.
-    Tooth { tooth: i32, upper: bool, segment: OutlineSegment, ends: [f64; 2] },
-    Bore { angles: [f64; 2] },
+    Tooth {
+        tooth: i32,
+        upper: bool,
+        segment: OutlineSegment,
+        ends: [f64; 2],
+    },
+    Bore {
+        angles: [f64; 2],
+    },
 }
 
 /// Largest elements: on the outline of the teeth and on the bore, in modules.
@@ -79,13 +86,24 @@ impl Outline<'_> {
             ((k - 1) as f64 + share) / FINE as f64
         };
         let cuts: Vec<f64> = (0..=count)
-            .map(|k| if k == 0 { 0.0 } else if k == count { 1.0 } else { at(total * k as f64 / count as f64) })
+            .map(|k| {
+                if k == 0 {
+                    0.0
+                } else if k == count {
+                    1.0
+                } else {
+                    at(total * k as f64 / count as f64)
+                }
+            })
             .collect();
         cuts.windows(2)
             .map(|cut| {
-                let inner = |ends: [f64; 2]| [ends[0] + cut[0] * (ends[1] - ends[0]), ends[0] + cut[1] * (ends[1] - ends[0])];
+                let inner =
+                    |ends: [f64; 2]| [ends[0] + cut[0] * (ends[1] - ends[0]), ends[0] + cut[1] * (ends[1] - ends[0])];
                 match whole {
-                    Place::Tooth { tooth, upper, segment, ends } => Place::Tooth { tooth, upper, segment, ends: inner(ends) },
+                    Place::Tooth { tooth, upper, segment, ends } => {
+                        Place::Tooth { tooth, upper, segment, ends: inner(ends) }
+                    }
                     Place::Bore { angles } => Place::Bore { angles: inner(angles) },
                 }
             })
@@ -94,9 +112,16 @@ impl Outline<'_> {
 }
 
 /// Meshes one gear of a pair as it stands at a mesh cycle, contact elements of about `finest` (m).
-pub fn whole_gear(pair: &GearPair, member: Member, pairs: &[i32], mesh_cycle: f64, finest: f64) -> anyhow::Result<TriangleMesh> {
+pub fn whole_gear(
+    pair: &GearPair,
+    member: Member,
+    pairs: &[i32],
+    mesh_cycle: f64,
+    finest: f64,
+) -> anyhow::Result<TriangleMesh> {
     let gear = pair.gear(member);
-    let outline = Outline { gear, half: gear.half_tooth_outline(), pitch: std::f64::consts::TAU / f64::from(gear.teeth()) };
+    let outline =
+        Outline { gear, half: gear.half_tooth_outline(), pitch: std::f64::consts::TAU / f64::from(gear.teeth()) };
     let upper_works = pair.working_side(member).sign() > 0.0;
     let step = pair.tooth_step(member);
     let tip = gear.roll_distance(gear.tip_form_radius());

@@ -18,7 +18,8 @@ use gear_geom::Member;
 use gearwright::case::{self, SpurPairCase};
 
 /// Cases and mesh cycles (pair 0 at its pitch point at 0).
-const SCENES: [(&str, &[f64]); 2] = [("nonunity-pair.toml", &[0.0, 0.2, 0.4, 0.6]), ("unity-pair.toml", &[0.0, 0.3, 0.5])];
+const SCENES: [(&str, &[f64]); 2] =
+    [("nonunity-pair.toml", &[0.0, 0.2, 0.4, 0.6]), ("unity-pair.toml", &[0.0, 0.3, 0.5])];
 
 /// Sizes of contact elements in Hertz half widths: the last is compared, the others show convergence.
 const LADDER: [f64; 3] = [1.0, 0.5, 0.25];
@@ -88,7 +89,8 @@ fn gearwright_answer(case: &SpurPairCase, mesh_cycle: f64) -> anyhow::Result<(An
     let options = fecm::statics::PairModelOptions { face: FaceModel::PlaneStrain, ..case.options };
     let model = PairModel::new(&case.pair, &options)?;
     let torques = vec![case.inputs.load.torque_n_m];
-    let request = StaticsRequest { mesh_cycles: vec![mesh_cycle], torques, stiffness_difference: false, keep_pressure: false };
+    let request =
+        StaticsRequest { mesh_cycles: vec![mesh_cycle], torques, stiffness_difference: false, keep_pressure: false };
     let position = model.solve(&request, &())?.results.remove(0).remove(0);
     let stats = model.stats();
     let unknowns = stats.pinion.sector_unknowns + stats.wheel.sector_unknowns;
@@ -105,7 +107,8 @@ fn calculix_answer(case: &SpurPairCase, ours: &PositionResult, size: f64) -> any
     let line_load = ours.mesh_force / facewidth;
     let half_width = fecm::pairing::Pairing::new(pair).hertz_half_width(inverse_modulus, line_load);
     let pairs: Vec<i32> = ours.loaded_pairs().map(|p| p.pair).collect();
-    let meshes = [Member::Pinion, Member::Wheel].map(|member| mesh::whole_gear(pair, member, &pairs, ours.mesh_cycle, size * half_width));
+    let meshes = [Member::Pinion, Member::Wheel]
+        .map(|member| mesh::whole_gear(pair, member, &pairs, ours.mesh_cycle, size * half_width));
     let [pinion, wheel] = meshes;
     let meshes = [pinion?, wheel?];
     let base_radius = pair.wheel().base_radius();

@@ -82,15 +82,25 @@ impl Report {
             .iter()
             .enumerate()
             .map(|(k, family)| {
-                let mut points: Vec<(f64, f64)> = self.entries.iter().filter(|e| e.family == **family).map(point).collect();
+                let mut points: Vec<(f64, f64)> =
+                    self.entries.iter().filter(|e| e.family == **family).map(point).collect();
                 points.sort_by(|a, b| a.0.total_cmp(&b.0));
-                Line { name: (*family).clone(), points, pattern: patterns[(k / COLOURS.len()) % 4], colour: COLOURS[k % COLOURS.len()] }
+                Line {
+                    name: (*family).clone(),
+                    points,
+                    pattern: patterns[(k / COLOURS.len()) % 4],
+                    colour: COLOURS[k % COLOURS.len()],
+                }
             })
             .collect();
         // a cross over the default
         if let Some(default) = self.entries.iter().find(|e| e.is_default) {
             let (x, y) = point(default);
-            for (k, points) in [vec![(x / 1.25, y / 1.6), (x * 1.25, y * 1.6)], vec![(x / 1.25, y * 1.6), (x * 1.25, y / 1.6)]].into_iter().enumerate() {
+            for (k, points) in
+                [vec![(x / 1.25, y / 1.6), (x * 1.25, y * 1.6)], vec![(x / 1.25, y * 1.6), (x * 1.25, y / 1.6)]]
+                    .into_iter()
+                    .enumerate()
+            {
                 let name = if k == 0 { "default".to_owned() } else { String::new() };
                 lines.push(Line { name, points, pattern: Pattern::Solid, colour: "#ff0000" });
             }

@@ -39,7 +39,12 @@ pub fn run() -> anyhow::Result<()> {
             let (first, time) = solve(&scene, &options)?;
             let (_, again) = solve(&scene, &options)?;
             let errors = (0..2).map(|k| root_mean_square(&first[k], &reference[k])).collect::<Vec<_>>();
-            println!("{family:>24} {setting:>6}: {:.3} s, {:.4} % {:.4} %", time.min(again), 100.0 * errors[0], 100.0 * errors[1]);
+            println!(
+                "{family:>24} {setting:>6}: {:.3} s, {:.4} % {:.4} %",
+                time.min(again),
+                100.0 * errors[0],
+                100.0 * errors[1]
+            );
             let is_default = options == scene.default;
             entries.push(Entry { family, setting, is_default, time: time.min(again), errors });
         }
@@ -83,7 +88,14 @@ fn scenes() -> anyhow::Result<Vec<Scene>> {
             reference.contact.face_cells = 64;
             reference.face = FaceModel::Solid { order: 12 };
         }
-        scenes.push(Scene { name, title, pair: case.pair, torque: case.inputs.load.torque_n_m, default: case.options, reference });
+        scenes.push(Scene {
+            name,
+            title,
+            pair: case.pair,
+            torque: case.inputs.load.torque_n_m,
+            default: case.options,
+            reference,
+        });
     }
     Ok(scenes)
 }
@@ -130,7 +142,8 @@ fn solve(scene: &Scene, options: &PairModelOptions) -> anyhow::Result<(Curves, f
     let started = Instant::now();
     let model = PairModel::new(&scene.pair, options)?;
     let mesh_cycles = (0..POSITIONS).map(|k| f64::from(k) / f64::from(POSITIONS)).collect();
-    let request = StaticsRequest { mesh_cycles, torques: vec![scene.torque], stiffness_difference: false, keep_pressure: false };
+    let request =
+        StaticsRequest { mesh_cycles, torques: vec![scene.torque], stiffness_difference: false, keep_pressure: false };
     let results = model.solve(&request, &())?.results.remove(0);
     let time = started.elapsed().as_secs_f64();
     let error = results.iter().map(|r| r.static_transmission_error).collect();

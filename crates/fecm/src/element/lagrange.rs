@@ -153,9 +153,7 @@ mod tests {
                 basis.values_into(x, &mut values);
                 basis.derivatives_into(x, &mut slopes);
                 for power in 0..=order as i32 {
-                    let at = |c: &[f64]| -> f64 {
-                        basis.points().iter().zip(c).map(|(p, c)| c * p.powi(power)).sum()
-                    };
+                    let at = |c: &[f64]| -> f64 { basis.points().iter().zip(c).map(|(p, c)| c * p.powi(power)).sum() };
                     let slope = if power == 0 { 0.0 } else { f64::from(power) * x.powi(power - 1) };
                     assert!((at(&values) - x.powi(power)).abs() < 1e-12);
                     assert!((at(&slopes) - slope).abs() < 1e-10);

@@ -9,10 +9,10 @@
 //! A step factors the active block anew: at the sizes of a contact grid (up to some 1500 cells) most exchanges touch a large
 //! part of the set, for which a fresh blocked factorisation is faster than updates.
 
+use super::ContactSolver;
 use super::error::LcpError;
 use super::lemke::LemkeSolver;
 use super::problem::{ContactProblem, ContactSolution, OnActive, SolveStatus};
-use super::ContactSolver;
 
 /// Fast solver; see the module header.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,19 +78,12 @@ impl ContactSolver for ActiveSetSolver {
 
 impl ActiveSetSolver {
     /// Cells on the wrong side, ascending.
-    fn wrong_cells(
-        &self,
-        problem: &ContactProblem<'_>,
-        cells: &[usize],
-        active: &[bool],
-        on: &OnActive,
-    ) -> Vec<usize> {
+    fn wrong_cells(&self, problem: &ContactProblem<'_>, cells: &[usize], active: &[bool], on: &OnActive) -> Vec<usize> {
         let largest = on.forces.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
         let deflection = problem.deflection(on.closing);
         let gaps = problem.gaps(cells, on);
         let pulls = cells.iter().zip(&on.forces).filter(|(_, f)| **f < -self.tolerance * largest).map(|(c, _)| *c);
-        let overlaps =
-            (0..problem.size()).filter(|&i| !active[i] && gaps[i] < -self.tolerance * deflection);
+        let overlaps = (0..problem.size()).filter(|&i| !active[i] && gaps[i] < -self.tolerance * deflection);
         let mut wrong: Vec<usize> = pulls.chain(overlaps).collect();
         wrong.sort_unstable();
         wrong

@@ -11,9 +11,9 @@
 
 use faer::{Mat, MatRef};
 
+use super::ContactSolver;
 use super::error::LcpError;
 use super::problem::{ContactProblem, ContactSolution, SolveStatus};
-use super::ContactSolver;
 
 /// Reference solver; see the module header.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,10 +46,7 @@ impl ContactSolver for LemkeSolver {
             (false, true) => problem.arm[j] / arm,
             (false, false) => 0.0,
         });
-        let constant: Vec<f64> = (0..n)
-            .map(|i| (problem.open(i, touch) / deflection).max(0.0))
-            .chain([-1.0])
-            .collect();
+        let constant: Vec<f64> = (0..n).map(|i| (problem.open(i, touch) / deflection).max(0.0)).chain([-1.0]).collect();
         let outcome = lemke(matrix.as_ref(), &constant, self.pivots_per_unknown * (n + 1));
         let status = if outcome.solved { SolveStatus::Converged } else { SolveStatus::IterationLimit };
         let mut cells: Vec<usize> = (0..n).filter(|&i| outcome.z[i] > 0.0).collect();
@@ -133,7 +130,8 @@ fn lemke(matrix: MatRef<'_, f64>, constant: &[f64], limit: usize) -> Outcome {
         for i in 0..n {
             let step = rows[i][entering];
             if step > 1e-11 {
-                let better = best.is_none_or(|b| lexicographically_less(&rows[i], step, &rows[b], rows[b][entering], n));
+                let better =
+                    best.is_none_or(|b| lexicographically_less(&rows[i], step, &rows[b], rows[b][entering], n));
                 if better {
                     best = Some(i);
                 }

@@ -3,7 +3,7 @@
 use faer::{Mat, MatRef};
 
 use super::error::LcpError;
-use crate::linalg::DenseCholesky;
+use crate::linalg::{DenseCholesky, lower_triangle};
 
 /// A contact problem; see [`crate::lcp`].
 #[derive(Debug, Clone, Copy)]
@@ -142,14 +142,9 @@ impl ContactProblem<'_> {
     pub(super) fn on_active(&self, cells: &[usize]) -> Result<OnActive, LcpError> {
         let count = cells.len();
         let touch = self.touch();
-        let mut matrix = Mat::zeros(count, count);
-        for (j, &column) in cells.iter().enumerate() {
-            for (i, &row) in cells.iter().enumerate().skip(j) {
-                matrix[(i, j)] = self.compliance[(row, column)];
-            }
-        }
-        let factor = DenseCholesky::new(matrix, "contact")
-            .map_err(|_| LcpError::NotPositiveDefinite { cells: count })?;
+        let matrix = lower_triangle(self.compliance, cells);
+        let factor =
+            DenseCholesky::new(matrix, "contact").map_err(|_| LcpError::NotPositiveDefinite { cells: count })?;
         let mut solved =
             Mat::from_fn(count, 2, |i, j| if j == 0 { self.open(cells[i], touch) } else { self.arm[cells[i]] });
         factor.solve_in_place(solved.as_mut());

@@ -71,13 +71,7 @@ impl BlockMesher {
     }
 
     /// Adds an edge along `curve`, whose elements end at the parameters `breaks` (first and last at the vertices).
-    pub fn edge(
-        &mut self,
-        from: Vertex,
-        to: Vertex,
-        breaks: &[f64],
-        curve: impl Fn(f64) -> Point2<f64>,
-    ) -> Edge {
+    pub fn edge(&mut self, from: Vertex, to: Vertex, breaks: &[f64], curve: impl Fn(f64) -> Point2<f64>) -> Edge {
         let mut nodes = vec![from.0];
         for (index, pair) in breaks.windows(2).enumerate() {
             for k in 1..self.local.len() {
@@ -144,7 +138,8 @@ impl BlockMesher {
         let (t0, t1) = (blend[2][row], blend[3][row]);
         let u = (s0 + t0 * (s1 - s0)) / (1.0 - (s1 - s0) * (t1 - t0));
         let v = t0 + u * (t1 - t0);
-        let edge_part = at(bottom, column) * (1.0 - v) + at(top, column) * v + at(left, row) * (1.0 - u) + at(right, row) * u;
+        let edge_part =
+            at(bottom, column) * (1.0 - v) + at(top, column) * v + at(left, row) * (1.0 - u) + at(right, row) * u;
         let corner_part = at(bottom, 0) * ((1.0 - u) * (1.0 - v))
             + at(bottom, last) * (u * (1.0 - v))
             + at(top, 0) * ((1.0 - u) * v)
@@ -163,7 +158,6 @@ impl BlockMesher {
         let total = sums[sums.len() - 1];
         sums.iter().map(|sum| sum / total).collect()
     }
-
 
     /// The finished mesh.
     #[must_use]

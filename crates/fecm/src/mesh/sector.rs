@@ -190,10 +190,8 @@ impl<'a> SectorBuilder<'a> {
         self.mesher.block(&second.column, &second.cut, &second.rim, &second.root);
         self.mesher.block(&first.cut, &first.column, &first.rim.reversed(), &first.root.reversed());
         let rim_edges = [&first.rim, &rim, &second.rim].map(|edge| self.split(edge)).concat();
-        let flanks = [&first, &second].map(|half| FlankEdge {
-            edges: self.split(&half.involute),
-            arc_breaks: self.involute_breaks.clone(),
-        });
+        let flanks = [&first, &second]
+            .map(|half| FlankEdge { edges: self.split(&half.involute), arc_breaks: self.involute_breaks.clone() });
         let cuts = [&first.cut, &second.cut].map(|cut| cut.nodes().to_vec());
         let ([lower_flank, upper_flank], [lower_cut, upper_cut]) =
             if self.outward > 0.0 { (flanks, cuts) } else { (reverse(flanks), reverse(cuts)) };
@@ -248,13 +246,11 @@ impl<'a> SectorBuilder<'a> {
 
         let upper_fillet = OutlinePath::new(&outline, &[(OutlineSegment::Fillet, junction_u, 1.0)]);
         let fillet_breaks = even_breaks(self.density.count(3.0));
-        let fillet =
-            self.mesher.edge(junction, fillet_end, &fillet_breaks, |t| mirror(upper_fillet.point(t)));
+        let fillet = self.mesher.edge(junction, fillet_end, &fillet_breaks, |t| mirror(upper_fillet.point(t)));
         let breaks = self.involute_breaks.clone();
         let base = self.gear.base_radius();
-        let involute = self
-            .mesher
-            .edge(fillet_end, tip, &breaks, |arc| mirror(flank_point_at_arc(&outline, base, &breaks, arc)));
+        let involute =
+            self.mesher.edge(fillet_end, tip, &breaks, |arc| mirror(flank_point_at_arc(&outline, base, &breaks, arc)));
 
         // from the rim inward to the junction and to mid-space, elements shrinking toward the tooth
         let foot = on_rim(rim_angle);
@@ -262,13 +258,10 @@ impl<'a> SectorBuilder<'a> {
         let direction = Rotation2::new(-self.outward * FRAC_PI_3 * 2.0) * up;
         let reach = (0.5 * (at_junction - foot).norm()).min(0.6 * self.gear.module());
         let bend = at_junction + direction * reach;
-        let column = self
-            .mesher
-            .edge(rim_vertex, junction, &radial_breaks, |t| mirror(bezier(foot, bend, at_junction, t)));
+        let column =
+            self.mesher.edge(rim_vertex, junction, &radial_breaks, |t| mirror(bezier(foot, bend, at_junction, t)));
         let cut_foot = on_rim(half_angle);
-        let cut = self
-            .mesher
-            .edge(rim_cut, space, &radial_breaks, |t| mirror(cut_foot + (space_point - cut_foot) * t));
+        let cut = self.mesher.edge(rim_cut, space, &radial_breaks, |t| mirror(cut_foot + (space_point - cut_foot) * t));
 
         let side_breaks = even_breaks(self.density.count(2.0));
         let root_path = OutlinePath::new(
@@ -276,9 +269,9 @@ impl<'a> SectorBuilder<'a> {
             &[(OutlineSegment::Fillet, junction_u, 0.0), (OutlineSegment::RootLand, 1.0, 0.0)],
         );
         let root = self.mesher.edge(junction, space, &side_breaks, |t| mirror(root_path.point(t)));
-        let rim = self.mesher.edge(rim_vertex, rim_cut, &side_breaks, |t| {
-            mirror(on_rim(rim_angle + t * (half_angle - rim_angle)))
-        });
+        let rim = self
+            .mesher
+            .edge(rim_vertex, rim_cut, &side_breaks, |t| mirror(on_rim(rim_angle + t * (half_angle - rim_angle))));
         Half {
             flank: fillet.joined(&involute),
             involute,
@@ -309,9 +302,8 @@ impl<'a> SectorBuilder<'a> {
     fn chord(&mut self, first: &Half, second: &Half, across: &[f64]) -> Edge {
         let (a, b) = (first.junction_point, second.junction_point);
         let reach = (b - a).norm() / 3.0;
-        let bend = |half: &Half| {
-            half.junction_point + Rotation2::new(-self.outward * half.sign * FRAC_PI_3) * half.up * reach
-        };
+        let bend =
+            |half: &Half| half.junction_point + Rotation2::new(-self.outward * half.sign * FRAC_PI_3) * half.up * reach;
         let (a_bend, b_bend) = (bend(first), bend(second));
         self.mesher.edge(first.junction, second.junction, across, |t| {
             let s = 1.0 - t;

@@ -42,8 +42,8 @@ pub struct ContactOptions {
 impl Default for ContactOptions {
     fn default() -> Self {
         Self {
-            cells_per_half_width: 6.0,
-            face_cells: 24,
+            cells_per_half_width: 8.0,
+            face_cells: 48,
             matching_depth: 0.15,
             edge_correction: true,
             solver: SolverKind::default(),

@@ -15,8 +15,8 @@ use crate::search::{NoCell, OpposedPoints};
 /// What one position hands to the next as a start.
 #[derive(Debug, Clone)]
 pub(super) struct Start {
-    /// Closing rotation (rad).
-    pub rotation: f64,
+    /// Closing rotation since first touch (rad).
+    pub closing: f64,
     /// Cell size along the profile (m).
     pub cell: f64,
     /// Rows on either side of the contact's centre.
@@ -39,6 +39,9 @@ pub(super) struct PositionRequest<'a> {
 /// Geometry is set again when the rotation moved by more than this fraction: the error of the linear step is then below
 /// `(0.02 delta)^2 / 2 R`, some 1e-5 of `delta`.
 const ROTATION_TOLERANCE: f64 = 0.02;
+/// The compliance is set again when the rotation moved by more than this fraction: contact then shifts along the flank by less than that
+/// fraction of the deflection, some micrometres at most, over which the compliance of a tooth changes by some 1e-4.
+const COMPLIANCE_TOLERANCE: f64 = 0.1;
 const MOST_UPDATES: usize = 24;
 /// Deflection at which a position counts as overloaded, in base pitches.
 const MOST_DEFLECTION: f64 = 0.25;
@@ -64,13 +67,15 @@ impl PairModel {
         let mut cell = start.map_or_else(|| self.cell_size(request.torque), |s| s.cell);
         let most = no_load + MOST_DEFLECTION * self.pairing.pair().base_pitch() / base_radius;
         let mut rotation = match start {
-            Some(start) => start.rotation.max(no_load),
+            Some(start) => no_load + start.closing.max(0.0),
             None => no_load + self.deflection_guess(request.torque) / base_radius,
         };
         rotation = rotation.min(most);
         let mut warm = start.cloned();
         let mut stats = PositionStats::default();
         let mut outcome: Option<(ContactGrid, Mat<f64>, ContactSolution)> = None;
+        // closing rotation at which the compliance was set
+        let mut compliance_from = f64::NAN;
         let mut status = PositionStatus::NotConverged;
         for update in 0..MOST_UPDATES {
             stats.geometry_updates = update;
@@ -78,23 +83,27 @@ impl PairModel {
             if grid.size() == 0 {
                 return Ok((self.untouched(request), None));
             }
-            let near = self.near_field(cell);
-            let compliance = grid.compliance([&self.bodies[0], &self.bodies[1]], self.pairing.tooth_steps(), &near)?;
+            let same_cells = |before: &ContactGrid| grid.has_the_cells_of(before);
+            let near_enough = (rotation - compliance_from).abs() < COMPLIANCE_TOLERANCE * (rotation - no_load);
+            let compliance = match outcome.take() {
+                Some((before, compliance, _)) if near_enough && same_cells(&before) => compliance,
+                _ => {
+                    compliance_from = rotation;
+                    let bodies = [&self.bodies[0], &self.bodies[1]];
+                    grid.compliance(bodies, self.pairing.tooth_steps(), &self.near_field(cell))?
+                }
+            };
             let active = warm.as_ref().map(|warm| to_cells(&grid, request.mesh_cycle, warm));
             let (gaps, arms) = (grid.gaps(), grid.wheel_arms());
-            let problem = ContactProblem {
-                compliance: compliance.as_ref(),
-                gap: &gaps,
-                arm: &arms,
-                load: request.torque,
-            };
+            let problem =
+                ContactProblem { compliance: compliance.as_ref(), gap: &gaps, arm: &arms, load: request.torque };
             let solution = solve_contact(self.options.contact.solver, &problem, active.as_deref())?;
             stats.solver = stats.solver.followed_by(&solution.stats);
             stats.cells = grid.size();
             let change = solution.approach;
             rotation += change;
             let active = from_cells(&grid, request.mesh_cycle, &solution.forces);
-            warm = Some(Start { rotation, cell, reach, active });
+            warm = Some(Start { closing: rotation - no_load, cell, reach, active });
             let crowded = grid_is_crowded(&grid, &solution.forces);
             let moved = change.abs() * base_radius > ROTATION_TOLERANCE * (rotation - no_load).abs() * base_radius;
             let converged = solution.is_converged();
@@ -126,7 +135,7 @@ impl PairModel {
             None
         };
         let result = self.collect(request, &grid, &solution, status, rotation, no_load, difference, stats);
-        Ok((result, warm.map(|warm| Start { rotation, ..warm })))
+        Ok((result, warm))
     }
 
     /// Pairs that the deflection can close, with rows around their nearest approach, the wheel closed by `rotation`.

@@ -36,7 +36,8 @@ fn check(root: &Node, node: &Node, schema: &Json, whole: &Json, at: &str, faults
             for key in schema.get("required").and_then(Json::as_array).into_iter().flatten().filter_map(Json::as_str) {
                 if !table.contains_key(key) {
                     let about = properties.get(key).map(|s| resolve(s, whole));
-                    let hint = about.as_ref().and_then(|s| s.get("description")).and_then(Json::as_str).unwrap_or_default();
+                    let hint =
+                        about.as_ref().and_then(|s| s.get("description")).and_then(Json::as_str).unwrap_or_default();
                     let what = hint.lines().next().unwrap_or_default();
                     faults.push(root.fault(&join(at, key), format!("this key is required: {what}")));
                 }
@@ -126,8 +127,10 @@ pub fn expected(schema: &Json) -> String {
 }
 
 fn unknown<'a>(key: &str, known: impl Iterator<Item = &'a String> + Clone) -> String {
-    const UNITS: [&str; 18] =
-        ["_mm", "_um", "_m", "_in", "_inch", "_deg", "_rad", "_n_m", "_nm", "_lb_in", "_gpa", "_mpa", "_pa", "_s", "_ms", "_hz", "_rpm", "_kg"];
+    const UNITS: [&str; 18] = [
+        "_mm", "_um", "_m", "_in", "_inch", "_deg", "_rad", "_n_m", "_nm", "_lb_in", "_gpa", "_mpa", "_pa", "_s",
+        "_ms", "_hz", "_rpm", "_kg",
+    ];
     let stem = |k: &'a str| UNITS.iter().filter_map(|unit| k.strip_suffix(unit)).min_by_key(|stem| stem.len());
     // the same quantity in another unit, or without one
     let quantity = UNITS.iter().filter_map(|unit| key.strip_suffix(unit)).min_by_key(|stem| stem.len()).unwrap_or(key);

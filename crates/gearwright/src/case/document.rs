@@ -70,17 +70,13 @@ fn plain(value: &DeValue<'_>) -> serde_json::Value {
     match value {
         DeValue::String(s) => s.to_string().into(),
         DeValue::Boolean(b) => (*b).into(),
-        DeValue::Integer(i) => {
-            i64::from_str_radix(i.as_str(), i.radix()).map_or(serde_json::Value::Null, Into::into)
-        }
+        DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).map_or(serde_json::Value::Null, Into::into),
         DeValue::Float(x) => {
             let number = x.as_str().replace('_', "").parse::<f64>().ok();
             number.and_then(serde_json::Number::from_f64).map_or(serde_json::Value::Null, serde_json::Value::Number)
         }
         DeValue::Array(items) => items.iter().map(|item| plain(item.get_ref())).collect(),
-        DeValue::Table(table) => {
-            table.iter().map(|(k, v)| (k.get_ref().to_string(), plain(v.get_ref()))).collect()
-        }
+        DeValue::Table(table) => table.iter().map(|(k, v)| (k.get_ref().to_string(), plain(v.get_ref()))).collect(),
         DeValue::Datetime(d) => d.to_string().into(),
     }
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 use fecm::statics::{ContactOptions, MemberOptions, PairModelOptions};
 use fecm::{BoreCondition, FaceModel, MeshDensity, SolverKind};
 use gear_geom::{
-    EndRelief, FilletSpec, FlankModification, GearKind, GearPair, GearSpec, GeometryError, MeasuredDeviation, ProfileRelief,
-    ToothThickness,
+    EndRelief, FilletSpec, FlankModification, GearKind, GearPair, GearSpec, GeometryError, MeasuredDeviation,
+    ProfileRelief, ToothThickness,
 };
 
 use super::document::Node;
@@ -160,7 +160,10 @@ fn modification(
         }
         let key = format!("{section}.{name}_start_deg");
         let Some(start) = start else {
-            faults.push(document.fault(&key, format!("this key is required with {name}_um: the roll angle where relief begins")));
+            faults.push(
+                document
+                    .fault(&key, format!("this key is required with {name}_um: the roll angle where relief begins")),
+            );
             return None;
         };
         let start_roll = start.to_radians() * base;
@@ -168,7 +171,11 @@ fn modification(
         let (low, high) = ends.map_or((0.0, 0.0), |[a, b]| (a.min(b), a.max(b)));
         if start_roll <= low || start_roll >= high {
             let degrees = |roll: f64| (roll / base).to_degrees();
-            let message = format!("must lie on the involute: between {:.3} and {:.3} degrees of roll", degrees(low), degrees(high));
+            let message = format!(
+                "must lie on the involute: between {:.3} and {:.3} degrees of roll",
+                degrees(low),
+                degrees(high)
+            );
             faults.push(document.fault(&key, message));
             return None;
         }
@@ -222,7 +229,8 @@ fn read_deviation(file: &Path, base: f64) -> Result<MeasuredDeviation, String> {
     for (row, record) in reader.records().enumerate() {
         let record = record.map_err(|e| format!("the table cannot be read: {e}"))?;
         let number = |column: usize, cell: &str| {
-            cell.parse::<f64>().map_err(|_| format!("row {}, column {} of the table is {cell:?}, not a number", row + 1, column + 1))
+            cell.parse::<f64>()
+                .map_err(|_| format!("row {}, column {} of the table is {cell:?}, not a number", row + 1, column + 1))
         };
         let cells = record.iter().enumerate().skip(1);
         if row == 0 {

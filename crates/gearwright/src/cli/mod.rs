@@ -94,7 +94,10 @@ fn run_case(file: &Path, out: Option<&Path>, threads: Option<usize>) -> anyhow::
     observer.finish();
     let finished = finished?;
     if finished.unusable > 0 {
-        eprintln!("warning: {} positions have no usable answer; the status columns of the tables say why", finished.unusable);
+        eprintln!(
+            "warning: {} positions have no usable answer; the status columns of the tables say why",
+            finished.unusable
+        );
     }
     Ok(format!("{}  results in {}\n", finished.screen, finished.folder.display()))
 }
@@ -119,7 +122,8 @@ fn explain(key: Option<&str>) -> anyhow::Result<String> {
     };
     let found: Vec<_> = all.iter().filter(|k| k.key == key || k.key.ends_with(&format!(".{key}"))).collect();
     if found.is_empty() {
-        let likeness = |k: &reference::KeyReference| strsim::jaro_winkler(key, k.key.rsplit('.').next().unwrap_or_default());
+        let likeness =
+            |k: &reference::KeyReference| strsim::jaro_winkler(key, k.key.rsplit('.').next().unwrap_or_default());
         let near = all.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
         bail!("there is no key \"{key}\"; the nearest is \"{}\"", near.map_or("", |k| &k.key));
     }

@@ -271,7 +271,10 @@ pub fn screen(case: &SpurPairCase, results: &Results, stats: &ModelStats, times:
     line(
         &mut text,
         "static transmission error",
-        format!("{:.3} to {:.3} um (at mesh cycle {:.2}), peak to peak {:.3} um", ste.min, ste.max, ste.max_at, results.ste_peak_to_peak_um),
+        format!(
+            "{:.3} to {:.3} um (at mesh cycle {:.2}), peak to peak {:.3} um",
+            ste.min, ste.max, ste.max_at, results.ste_peak_to_peak_um
+        ),
     );
     let no_load = &results.no_load_te_um;
     line(&mut text, "no-load transmission error", format!("{:.3} to {:.3} um", no_load.min, no_load.max));

@@ -4,7 +4,9 @@ pub mod statics;
 
 use std::path::Path;
 
-use kuva::prelude::{ColorMap, Heatmap, Layout, LegendPosition, LinePlot, Plot, ReferenceLine, render_to_png, render_to_svg};
+use kuva::prelude::{
+    ColorMap, Heatmap, Layout, LegendPosition, LinePlot, Plot, ReferenceLine, render_to_png, render_to_svg,
+};
 
 /// Line patterns, told apart without colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -85,7 +87,11 @@ fn journal(layout: Layout) -> Layout {
         .with_show_grid(false)
 }
 
-fn save(make: impl Fn() -> (Vec<Plot>, Layout), folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
+fn save(
+    make: impl Fn() -> (Vec<Plot>, Layout),
+    folder: &dyn Fn(&str) -> std::path::PathBuf,
+    name: &str,
+) -> Result<(), String> {
     let write = |path: &Path, bytes: &[u8]| std::fs::write(path, bytes).map_err(|e| format!("{}: {e}", path.display()));
     let (plots, layout) = make();
     write(&folder(&format!("{name}.svg")), render_to_svg(plots, layout).as_bytes())?;
@@ -107,7 +113,8 @@ impl Chart {
             .lines
             .iter()
             .map(|line| {
-                let mut plot = LinePlot::new().with_data(line.points.clone()).with_color(line.colour).with_stroke_width(1.8);
+                let mut plot =
+                    LinePlot::new().with_data(line.points.clone()).with_color(line.colour).with_stroke_width(1.8);
                 plot = match line.pattern {
                     Pattern::Solid => plot,
                     Pattern::Dashed => plot.with_dashed(),

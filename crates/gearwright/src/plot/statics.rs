@@ -13,7 +13,11 @@ fn line(name: &str, index: usize, pattern: Pattern, points: Vec<(f64, f64)>) -> 
     Line { name: name.into(), points, pattern, colour: COLOURS[index % COLOURS.len()] }
 }
 
-fn over_cycle(series: &[PositionResult], origin: f64, value: impl Fn(&PositionResult) -> Option<f64>) -> Vec<(f64, f64)> {
+fn over_cycle(
+    series: &[PositionResult],
+    origin: f64,
+    value: impl Fn(&PositionResult) -> Option<f64>,
+) -> Vec<(f64, f64)> {
     series.iter().filter_map(|r| value(r).map(|v| (r.mesh_cycle + origin, v))).collect()
 }
 
@@ -40,8 +44,18 @@ pub fn transmission_error(title: &str, series: &[PositionResult], origin: f64) -
 #[must_use]
 pub fn mesh_stiffness(title: &str, series: &[PositionResult], origin: f64) -> Chart {
     let mut lines = vec![
-        line("local slope", 0, Pattern::Solid, over_cycle(series, origin, |r| r.stiffness_local_slope.map(|k| k * 1e-6))),
-        line("average slope", 1, Pattern::Dashed, over_cycle(series, origin, |r| r.stiffness_average_slope.map(|k| k * 1e-6))),
+        line(
+            "local slope",
+            0,
+            Pattern::Solid,
+            over_cycle(series, origin, |r| r.stiffness_local_slope.map(|k| k * 1e-6)),
+        ),
+        line(
+            "average slope",
+            1,
+            Pattern::Dashed,
+            over_cycle(series, origin, |r| r.stiffness_average_slope.map(|k| k * 1e-6)),
+        ),
     ];
     let differences = over_cycle(series, origin, |r| r.stiffness_local_slope_difference.map(|k| k * 1e-6));
     if !differences.is_empty() {
@@ -111,7 +125,8 @@ pub fn force_deflection(title: &str, map: &[Vec<PositionResult>], origin: f64) -
     let positions = map.first().map_or(0, Vec::len);
     let patterns = [Pattern::Solid, Pattern::Dashed, Pattern::DashDotted, Pattern::Dotted];
     let lines = selection(positions, 5).into_iter().enumerate().map(|(index, k)| {
-        let of_torque = |r: &Vec<PositionResult>| r.get(k).map(|p| (p.static_transmission_error * 1e6, p.mesh_force * 1e-3));
+        let of_torque =
+            |r: &Vec<PositionResult>| r.get(k).map(|p| (p.static_transmission_error * 1e6, p.mesh_force * 1e-3));
         let at = map.first().and_then(|r| r.get(k)).map_or(0.0, |p| p.mesh_cycle + origin);
         line(&format!("mesh cycle {at:.2}"), index, patterns[index % 4], map.iter().filter_map(of_torque).collect())
     });
@@ -150,7 +165,8 @@ pub fn flank_pressure(title: &str, series: &[PositionResult], pair: &GearPair, m
         for (roll, pressures) in patch.pinion_roll.iter().zip(&patch.pressure) {
             // the cell's extent in roll distance
             let reach = 0.5 * patch.cell[0] * pair.pinion().base_radius() / roll.max(1e-9);
-            let row_of = |s: f64| ((high - s) / (high - low) * ROWS as f64).floor().clamp(0.0, ROWS as f64 - 1.0) as usize;
+            let row_of =
+                |s: f64| ((high - s) / (high - low) * ROWS as f64).floor().clamp(0.0, ROWS as f64 - 1.0) as usize;
             for row in row_of(roll + reach)..=row_of(roll - reach) {
                 for (j, pressure) in pressures.iter().enumerate() {
                     let value = pressure * 1e-6;

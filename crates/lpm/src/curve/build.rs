@@ -7,47 +7,21 @@ impl Curve {
     /// The same value everywhere.
     pub fn constant(value: f64) -> Result<Self, LpmError> {
         check(true, "constant value", value, "-", "finite")?;
-        Ok(Self::assemble(
-            1,
-            vec![Piece {
-                start: 0.0,
-                a: [value, 0.0, 0.0, 0.0],
-                kink: false,
-            }],
-        ))
+        Ok(Self::assemble(1, vec![Piece { start: 0.0, a: [value, 0.0, 0.0, 0.0], kink: false }]))
     }
 
     /// Piecewise constant: `steps` holds (phase at which the value begins, value), phases ascending in `[0, period)`.
     pub fn steps(period: usize, steps: &[(f64, f64)]) -> Result<Self, LpmError> {
         let (phases, values): (Vec<f64>, Vec<f64>) = steps.iter().copied().unzip();
         check_table(period, &phases, &values, 1)?;
-        let pieces = steps
-            .iter()
-            .map(|&(start, v)| Piece {
-                start,
-                a: [v, 0.0, 0.0, 0.0],
-                kink: true,
-            })
-            .collect();
+        let pieces = steps.iter().map(|&(start, v)| Piece { start, a: [v, 0.0, 0.0, 0.0], kink: true }).collect();
         Ok(Self::from_pieces(period, pieces))
     }
 
     /// Rectangular wave of one cycle: `high` from phase `rise` for a fraction `duty` of the cycle, `low` elsewhere.
     pub fn rectangular(low: f64, high: f64, rise: f64, duty: f64) -> Result<Self, LpmError> {
-        check(
-            (0.0..1.0).contains(&rise),
-            "rise",
-            rise,
-            "cycles",
-            "in [0, 1)",
-        )?;
-        check(
-            duty > 0.0 && duty < 1.0,
-            "duty",
-            duty,
-            "-",
-            "between 0 and 1, both excluded",
-        )?;
+        check((0.0..1.0).contains(&rise), "rise", rise, "cycles", "in [0, 1)")?;
+        check(duty > 0.0 && duty < 1.0, "duty", duty, "-", "between 0 and 1, both excluded")?;
         let fall = (rise + duty) % 1.0;
         let mut steps = [(rise, high), (fall, low)];
         steps.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -55,45 +29,17 @@ impl Curve {
     }
 
     /// Rectangular wave with ramps: straight lines of length `ramp` (cycles) centred on the two jumps.
-    pub fn trapezoidal(
-        low: f64,
-        high: f64,
-        rise: f64,
-        duty: f64,
-        ramp: f64,
-    ) -> Result<Self, LpmError> {
-        check(
-            (0.0..1.0).contains(&rise),
-            "rise",
-            rise,
-            "cycles",
-            "in [0, 1)",
-        )?;
-        check(
-            duty > 0.0 && duty < 1.0,
-            "duty",
-            duty,
-            "-",
-            "between 0 and 1, both excluded",
-        )?;
+    pub fn trapezoidal(low: f64, high: f64, rise: f64, duty: f64, ramp: f64) -> Result<Self, LpmError> {
+        check((0.0..1.0).contains(&rise), "rise", rise, "cycles", "in [0, 1)")?;
+        check(duty > 0.0 && duty < 1.0, "duty", duty, "-", "between 0 and 1, both excluded")?;
         let room = duty.min(1.0 - duty);
-        check(
-            ramp > 0.0 && ramp < room,
-            "ramp",
-            ramp,
-            "cycles",
-            "above 0, below both plateaus",
-        )?;
+        check(ramp > 0.0 && ramp < room, "ramp", ramp, "cycles", "above 0, below both plateaus")?;
         let r = 0.5 * ramp;
-        let mut pts: Vec<(f64, f64)> = [
-            (rise - r, low),
-            (rise + r, high),
-            (rise + duty - r, high),
-            (rise + duty + r, low),
-        ]
-        .iter()
-        .map(|&(t, v)| (t.rem_euclid(1.0), v))
-        .collect();
+        let mut pts: Vec<(f64, f64)> =
+            [(rise - r, low), (rise + r, high), (rise + duty - r, high), (rise + duty + r, low)]
+                .iter()
+                .map(|&(t, v)| (t.rem_euclid(1.0), v))
+                .collect();
         pts.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (phases, values): (Vec<f64>, Vec<f64>) = pts.into_iter().unzip();
         Self::table(1, &phases, &values, Interpolation::Linear)
@@ -106,46 +52,25 @@ impl Curve {
         values: &[f64],
         interpolation: Interpolation,
     ) -> Result<Self, LpmError> {
-        let least = if interpolation == Interpolation::Spline {
-            3
-        } else {
-            2
-        };
+        let least = if interpolation == Interpolation::Spline { 3 } else { 2 };
         check_table(period, phases, values, least)?;
         let n = phases.len();
         let next = |i: usize| {
-            if i + 1 < n {
-                (phases[i + 1], values[i + 1])
-            } else {
-                (phases[0] + period as f64, values[0])
-            }
+            if i + 1 < n { (phases[i + 1], values[i + 1]) } else { (phases[0] + period as f64, values[0]) }
         };
         let width: Vec<f64> = (0..n).map(|i| next(i).0 - phases[i]).collect();
         let slope: Vec<f64> = (0..n).map(|i| (next(i).1 - values[i]) / width[i]).collect();
         let pieces = match interpolation {
-            Interpolation::Linear => (0..n)
-                .map(|i| Piece {
-                    start: phases[i],
-                    a: [values[i], slope[i], 0.0, 0.0],
-                    kink: true,
-                })
-                .collect(),
+            Interpolation::Linear => {
+                (0..n).map(|i| Piece { start: phases[i], a: [values[i], slope[i], 0.0, 0.0], kink: true }).collect()
+            }
             Interpolation::Spline => {
                 let m = cyclic_spline(&width, &slope)?;
                 (0..n)
                     .map(|i| {
                         let (m0, m1, h) = (m[i], m[(i + 1) % n], width[i]);
-                        let a = [
-                            values[i],
-                            slope[i] - h * (2.0 * m0 + m1) / 6.0,
-                            0.5 * m0,
-                            (m1 - m0) / (6.0 * h),
-                        ];
-                        Piece {
-                            start: phases[i],
-                            a,
-                            kink: false,
-                        }
+                        let a = [values[i], slope[i] - h * (2.0 * m0 + m1) / 6.0, 0.5 * m0, (m1 - m0) / (6.0 * h)];
+                        Piece { start: phases[i], a, kink: false }
                     })
                     .collect()
             }
@@ -154,15 +79,9 @@ impl Curve {
     }
 
     /// Table of equally spaced values, the first at phase 0.
-    pub fn samples(
-        period: usize,
-        values: &[f64],
-        interpolation: Interpolation,
-    ) -> Result<Self, LpmError> {
+    pub fn samples(period: usize, values: &[f64], interpolation: Interpolation) -> Result<Self, LpmError> {
         let n = values.len().max(1) as f64;
-        let phases: Vec<f64> = (0..values.len())
-            .map(|i| i as f64 * period as f64 / n)
-            .collect();
+        let phases: Vec<f64> = (0..values.len()).map(|i| i as f64 * period as f64 / n).collect();
         Self::table(period, &phases, values, interpolation)
     }
 
@@ -173,29 +92,14 @@ impl Curve {
             check(true, "cosine coefficient", c, "-", "finite")?;
             check(true, "sine coefficient", s, "-", "finite")?;
         }
-        Ok(Self {
-            period: 1,
-            repr: Repr::Fourier {
-                mean,
-                harmonics: harmonics.to_vec(),
-            },
-        })
+        Ok(Self { period: 1, repr: Repr::Fourier { mean, harmonics: harmonics.to_vec() } })
     }
 }
 
-fn check_table(
-    period: usize,
-    phases: &[f64],
-    values: &[f64],
-    least: usize,
-) -> Result<(), LpmError> {
+fn check_table(period: usize, phases: &[f64], values: &[f64], least: usize) -> Result<(), LpmError> {
     check(period >= 1, "period", period as f64, "cycles", "at least 1")?;
     if phases.len() != values.len() {
-        return Err(LpmError::Length {
-            what: "values of a table",
-            found: values.len(),
-            needed: "as many as phases",
-        });
+        return Err(LpmError::Length { what: "values of a table", found: values.len(), needed: "as many as phases" });
     }
     if phases.len() < least {
         let needed = match least {
@@ -203,20 +107,10 @@ fn check_table(
             2 => "at least 2",
             _ => "at least 3",
         };
-        return Err(LpmError::Length {
-            what: "points of a table",
-            found: phases.len(),
-            needed,
-        });
+        return Err(LpmError::Length { what: "points of a table", found: phases.len(), needed });
     }
     for (index, (&phase, &value)) in phases.iter().zip(values).enumerate() {
-        let fault = |reason| {
-            Err(LpmError::Table {
-                index,
-                phase,
-                reason,
-            })
-        };
+        let fault = |reason| Err(LpmError::Table { index, phase, reason });
         if !value.is_finite() {
             return fault("value is not finite");
         }
@@ -229,11 +123,7 @@ fn check_table(
     }
     if phases.len() > 1 && period as f64 - phases[phases.len() - 1] + phases[0] < 1e-9 {
         let index = phases.len() - 1;
-        return Err(LpmError::Table {
-            index,
-            phase: phases[index],
-            reason: "coincides with the first point",
-        });
+        return Err(LpmError::Table { index, phase: phases[index], reason: "coincides with the first point" });
     }
     Ok(())
 }
@@ -267,11 +157,5 @@ fn cyclic_spline(width: &[f64], slope: &[f64]) -> Result<Vec<f64>, LpmError> {
     let z = solve(u);
     let factor = (y[0] + corner / g * y[n - 1]) / (1.0 + z[0] + corner / g * z[n - 1]);
     let m: Vec<f64> = y.iter().zip(&z).map(|(y, z)| y - factor * z).collect();
-    if m.iter().all(|v| v.is_finite()) {
-        Ok(m)
-    } else {
-        Err(LpmError::Singular {
-            place: "periodic spline",
-        })
-    }
+    if m.iter().all(|v| v.is_finite()) { Ok(m) } else { Err(LpmError::Singular { place: "periodic spline" }) }
 }

@@ -42,14 +42,8 @@ struct Piece {
 
 #[derive(Debug, Clone, PartialEq)]
 enum Repr {
-    Pieces {
-        pieces: Vec<Piece>,
-        hint: Vec<u32>,
-    },
-    Fourier {
-        mean: f64,
-        harmonics: Vec<(f64, f64)>,
-    },
+    Pieces { pieces: Vec<Piece>, hint: Vec<u32> },
+    Fourier { mean: f64, harmonics: Vec<(f64, f64)> },
 }
 
 /// A periodic function of the mesh phase.
@@ -60,12 +54,7 @@ pub struct Curve {
 }
 
 fn taylor_shift(a: [f64; 4], s: f64) -> [f64; 4] {
-    [
-        a[0] + s * (a[1] + s * (a[2] + s * a[3])),
-        a[1] + s * (2.0 * a[2] + 3.0 * s * a[3]),
-        a[2] + 3.0 * s * a[3],
-        a[3],
-    ]
+    [a[0] + s * (a[1] + s * (a[2] + s * a[3])), a[1] + s * (2.0 * a[2] + 3.0 * s * a[3]), a[2] + 3.0 * s * a[3], a[3]]
 }
 
 impl Curve {
@@ -90,9 +79,7 @@ impl Curve {
     pub(crate) fn kinks(&self) -> Vec<f64> {
         match &self.repr {
             Repr::Fourier { .. } => Vec::new(),
-            Repr::Pieces { pieces, .. } => {
-                pieces.iter().filter(|p| p.kink).map(|p| p.start).collect()
-            }
+            Repr::Pieces { pieces, .. } => pieces.iter().filter(|p| p.kink).map(|p| p.start).collect(),
         }
     }
 
@@ -117,11 +104,7 @@ impl Curve {
     /// Value and slope at `tau` in `[0, period]`, using only the pieces `range` (so jumps are seen from one side).
     #[inline]
     pub(crate) fn value_and_slope_within(&self, tau: f64, range: (u32, u32)) -> (f64, f64) {
-        let piece = if range.0 == range.1 {
-            range.0
-        } else {
-            self.locate(tau).clamp(range.0, range.1)
-        };
+        let piece = if range.0 == range.1 { range.0 } else { self.locate(tau).clamp(range.0, range.1) };
         self.eval_in(tau, piece)
     }
 
@@ -131,11 +114,7 @@ impl Curve {
         match &self.repr {
             Repr::Fourier { .. } => self.eval_in(tau, 0).0,
             Repr::Pieces { pieces, .. } => {
-                let piece = if range.0 == range.1 {
-                    range.0
-                } else {
-                    self.locate(tau).clamp(range.0, range.1)
-                };
+                let piece = if range.0 == range.1 { range.0 } else { self.locate(tau).clamp(range.0, range.1) };
                 let p = &pieces[piece as usize];
                 let u = tau - p.start;
                 p.a[0] + u * (p.a[1] + u * (p.a[2] + u * p.a[3]))
@@ -154,10 +133,7 @@ impl Curve {
             Repr::Pieces { pieces, .. } => {
                 let p = &pieces[piece as usize];
                 let u = tau - p.start;
-                (
-                    p.a[0] + u * (p.a[1] + u * (p.a[2] + u * p.a[3])),
-                    p.a[1] + u * (2.0 * p.a[2] + 3.0 * u * p.a[3]),
-                )
+                (p.a[0] + u * (p.a[1] + u * (p.a[2] + u * p.a[3])), p.a[1] + u * (2.0 * p.a[2] + 3.0 * u * p.a[3]))
             }
             Repr::Fourier { mean, harmonics } => {
                 let (s1, c1) = (TAU * tau).sin_cos();
@@ -191,11 +167,7 @@ impl Curve {
         if let (Some(first), Some(last)) = (pieces.first().copied(), pieces.last().copied())
             && first.start > 0.0
         {
-            let head = Piece {
-                start: 0.0,
-                a: taylor_shift(last.a, period as f64 - last.start),
-                kink: false,
-            };
+            let head = Piece { start: 0.0, a: taylor_shift(last.a, period as f64 - last.start), kink: false };
             pieces.insert(0, head);
         }
         Self::assemble(period, pieces)
@@ -210,10 +182,7 @@ impl Curve {
                 pieces.partition_point(|p| p.start <= t).saturating_sub(1) as u32
             })
             .collect();
-        Self {
-            period,
-            repr: Repr::Pieces { pieces, hint },
-        }
+        Self { period, repr: Repr::Pieces { pieces, hint } }
     }
 }
 

@@ -24,21 +24,12 @@ fn order_spline_is_fourth_order_and_linear_second() -> Result<(), LpmError> {
     let error = |n: usize, kind| -> Result<f64, LpmError> {
         let values: Vec<f64> = (0..n).map(|i| f(i as f64 / n as f64)).collect();
         let c = Curve::samples(1, &values, kind)?;
-        Ok((0..997)
-            .map(|i| i as f64 / 997.0)
-            .map(|t| (c.value(t) - f(t)).abs())
-            .fold(0.0, f64::max))
+        Ok((0..997).map(|i| i as f64 / 997.0).map(|t| (c.value(t) - f(t)).abs()).fold(0.0, f64::max))
     };
     for (kind, order) in [(Interpolation::Linear, 2.0), (Interpolation::Spline, 4.0)] {
-        let e: Vec<f64> = [20, 40, 80, 160]
-            .iter()
-            .map(|&n| error(n, kind))
-            .collect::<Result<_, _>>()?;
+        let e: Vec<f64> = [20, 40, 80, 160].iter().map(|&n| error(n, kind)).collect::<Result<_, _>>()?;
         let slope = (e[0] / e[3]).log2() / 3.0;
-        assert!(
-            (slope - order).abs() < 0.15,
-            "{kind:?}: order {slope}, errors {e:?}"
-        );
+        assert!((slope - order).abs() < 0.15, "{kind:?}: order {slope}, errors {e:?}");
     }
     Ok(())
 }
@@ -46,15 +37,7 @@ fn order_spline_is_fourth_order_and_linear_second() -> Result<(), LpmError> {
 #[test]
 fn analytic_rectangular_and_shifted_jumps() -> Result<(), LpmError> {
     let c = Curve::rectangular(1.0, 2.0, 0.7, 0.5)?;
-    for (t, v) in [
-        (0.0, 2.0),
-        (0.19, 2.0),
-        (0.2, 1.0),
-        (0.69, 1.0),
-        (0.7, 2.0),
-        (-0.1, 2.0),
-        (5.5, 1.0),
-    ] {
+    for (t, v) in [(0.0, 2.0), (0.19, 2.0), (0.2, 1.0), (0.69, 1.0), (0.7, 2.0), (-0.1, 2.0), (5.5, 1.0)] {
         assert_eq!(c.value(t), v, "at {t}");
     }
     assert!((c.mean() - 1.5).abs() < 1e-15);
@@ -74,11 +57,7 @@ fn invariant_replaced_cycles_follow_both_curves() -> Result<(), LpmError> {
     assert_eq!(w.period(), 7);
     for i in 0..700 {
         let t = i as f64 * 0.01 + 0.001;
-        let want = if (3.0..5.0).contains(&t) {
-            0.5 * h.value(t)
-        } else {
-            h.value(t)
-        };
+        let want = if (3.0..5.0).contains(&t) { 0.5 * h.value(t) } else { h.value(t) };
         assert!((w.value(t) - want).abs() < 1e-12, "at {t}");
     }
     Ok(())

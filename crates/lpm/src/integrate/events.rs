@@ -35,43 +35,17 @@ struct Boundary {
 fn boundaries(phase: ContactPhase, coast: bool) -> [Option<Boundary>; 2] {
     use ContactPhase::{Apart, Coast, Drive};
     match phase {
-        Drive => [
-            Some(Boundary {
-                drive: true,
-                sign: 1.0,
-                next: Apart,
-            }),
-            None,
-        ],
-        Coast => [
-            Some(Boundary {
-                drive: false,
-                sign: -1.0,
-                next: Apart,
-            }),
-            None,
-        ],
+        Drive => [Some(Boundary { drive: true, sign: 1.0, next: Apart }), None],
+        Coast => [Some(Boundary { drive: false, sign: -1.0, next: Apart }), None],
         Apart => [
-            Some(Boundary {
-                drive: true,
-                sign: -1.0,
-                next: Drive,
-            }),
-            coast.then_some(Boundary {
-                drive: false,
-                sign: 1.0,
-                next: Coast,
-            }),
+            Some(Boundary { drive: true, sign: -1.0, next: Drive }),
+            coast.then_some(Boundary { drive: false, sign: 1.0, next: Coast }),
         ],
     }
 }
 
 /// First cut within the step, if any.
-pub(crate) fn find<const N: usize>(
-    run: &Runner<N>,
-    r: &Record<N>,
-    trials: &mut u64,
-) -> Option<Cut> {
+pub(crate) fn find<const N: usize>(run: &Runner<N>, r: &Record<N>, trials: &mut u64) -> Option<Cut> {
     boundaries(r.phase, run.system.coast_gap(&r.before).is_some())
         .into_iter()
         .flatten()
@@ -79,12 +53,7 @@ pub(crate) fn find<const N: usize>(
         .min_by(|a, b| a.theta.total_cmp(&b.theta))
 }
 
-fn find_one<const N: usize>(
-    run: &Runner<N>,
-    r: &Record<N>,
-    b: Boundary,
-    trials: &mut u64,
-) -> Option<Cut> {
+fn find_one<const N: usize>(run: &Runner<N>, r: &Record<N>, b: Boundary, trials: &mut u64) -> Option<Cut> {
     let s = run.system;
     let gap = |theta: f64, z: &Vector<N>| {
         let (g, rate) = if b.drive {
@@ -96,15 +65,7 @@ fn find_one<const N: usize>(
     };
     let mut at = |theta: f64| {
         *trials += 1;
-        let step = Step::prepare(
-            s,
-            run.method,
-            r.phase,
-            r.segment,
-            r.tau,
-            theta * r.dtau,
-            run.frequency,
-        );
+        let step = Step::prepare(s, run.method, r.phase, r.segment, r.tau, theta * r.dtau, run.frequency);
         gap(theta, &step.apply(s, &r.before).0).0
     };
     let (g0, d0) = gap(0.0, &r.before);
@@ -127,15 +88,9 @@ fn find_one<const N: usize>(
             return None;
         }
         return if g0 > 0.0 {
-            Some(Cut {
-                theta: root(&mut at, (0.0, g0), (theta, true_depth)),
-                next: Some(b.next),
-            })
+            Some(Cut { theta: root(&mut at, (0.0, g0), (theta, true_depth)), next: Some(b.next) })
         } else {
-            Some(Cut {
-                theta: 0.0,
-                next: Some(b.next),
-            })
+            Some(Cut { theta: 0.0, next: Some(b.next) })
         };
     }
     let (lo, glo) = if g0 > 0.0 {
@@ -145,22 +100,13 @@ fn find_one<const N: usize>(
         let theta = cubic_minimum(-g0, -d0, -g1, -d1).unwrap_or(0.5);
         let g = at(theta);
         if g <= 0.0 {
-            return Some(Cut {
-                theta: 0.0,
-                next: Some(b.next),
-            });
+            return Some(Cut { theta: 0.0, next: Some(b.next) });
         }
         (theta, g)
     } else {
-        return Some(Cut {
-            theta: 0.0,
-            next: Some(b.next),
-        });
+        return Some(Cut { theta: 0.0, next: Some(b.next) });
     };
-    Some(Cut {
-        theta: root(&mut at, (lo, glo), (1.0, g1)),
-        next: Some(b.next),
-    })
+    Some(Cut { theta: root(&mut at, (lo, glo), (1.0, g1)), next: Some(b.next) })
 }
 
 /// Zero of `f` between `a` (positive) and `b` (negative): Illinois variant of regula falsi, with bisection when slow.
@@ -211,29 +157,17 @@ fn cubic_minimum(g0: f64, d0: f64, g1: f64, d1: f64) -> Option<f64> {
         return None;
     }
     let q = disc.sqrt();
-    let t = if c2 > 0.0 {
-        -d0 / (c2 + q)
-    } else {
-        (q - c2) / (3.0 * c3)
-    };
+    let t = if c2 > 0.0 { -d0 / (c2 + q) } else { (q - c2) / (3.0 * c3) };
     (t > 0.0 && t < 1.0).then_some(t)
 }
 
 /// Jump of the velocities per unit normal displacement: `(M^-1-scaled direction, 1 / rate of the gap)`.
-pub(crate) fn saltation<const N: usize>(
-    run: &Runner<N>,
-    r: &Record<N>,
-    next: ContactPhase,
-) -> Option<([f64; N], f64)> {
+pub(crate) fn saltation<const N: usize>(run: &Runner<N>, r: &Record<N>, next: ContactPhase) -> Option<([f64; N], f64)> {
     let s = run.system;
     let tau = r.tau + r.dtau;
     let z = &r.after;
     let drive = r.phase == ContactPhase::Drive || next == ContactPhase::Drive;
-    let rate = if drive {
-        s.drive_gap(r.segment, tau, run.frequency, z).1
-    } else {
-        s.coast_gap(z)?.1
-    };
+    let rate = if drive { s.drive_gap(r.segment, tau, run.frequency, z).1 } else { s.coast_gap(z)?.1 };
     let force = |phase| s.mesh_force(&s.coefs(phase, r.segment, tau), z);
     let jump = force(next) - force(r.phase);
     if jump == 0.0 || rate.abs() < 1e-12 * s.scale * s.omega {

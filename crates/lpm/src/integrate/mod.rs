@@ -38,12 +38,7 @@ pub enum Method {
 
 impl Method {
     /// Every method, for studies.
-    pub const ALL: [Self; 4] = [
-        Self::Magnus,
-        Self::DormandPrince,
-        Self::Esdirk,
-        Self::Newmark,
-    ];
+    pub const ALL: [Self; 4] = [Self::Magnus, Self::DormandPrince, Self::Esdirk, Self::Newmark];
 
     /// Short name.
     pub fn name(self) -> &'static str {
@@ -99,48 +94,27 @@ pub struct Options {
 impl Default for Options {
     /// Adaptive steps at a tolerance of 1e-8.
     fn default() -> Self {
-        Self {
-            method: None,
-            step: StepControl::Adaptive { tolerance: 1e-8 },
-            max_events_per_cycle: 1000,
-        }
+        Self { method: None, step: StepControl::Adaptive { tolerance: 1e-8 }, max_events_per_cycle: 1000 }
     }
 }
 
 impl Options {
     /// Default options at another tolerance.
     pub fn with_tolerance(tolerance: f64) -> Self {
-        Self {
-            step: StepControl::Adaptive { tolerance },
-            ..Self::default()
-        }
+        Self { step: StepControl::Adaptive { tolerance }, ..Self::default() }
     }
 
     /// Checks ranges.
     pub fn validate(&self) -> Result<(), LpmError> {
         match self.step {
-            StepControl::Adaptive { tolerance: t } => check(
-                (1e-14..=0.1).contains(&t),
-                "tolerance",
-                t,
-                "-",
-                "between 1e-14 and 0.1",
-            )?,
-            StepControl::Fixed { per_cycle: n } => check(
-                (1.0..=1e8).contains(&n),
-                "steps per mesh cycle",
-                n,
-                "-",
-                "between 1 and 1e8",
-            )?,
+            StepControl::Adaptive { tolerance: t } => {
+                check((1e-14..=0.1).contains(&t), "tolerance", t, "-", "between 1e-14 and 0.1")?
+            }
+            StepControl::Fixed { per_cycle: n } => {
+                check((1.0..=1e8).contains(&n), "steps per mesh cycle", n, "-", "between 1 and 1e8")?
+            }
         };
-        check(
-            self.max_events_per_cycle >= 1,
-            "events per cycle",
-            self.max_events_per_cycle as f64,
-            "-",
-            "at least 1",
-        )?;
+        check(self.max_events_per_cycle >= 1, "events per cycle", self.max_events_per_cycle as f64, "-", "at least 1")?;
         Ok(())
     }
 
@@ -214,15 +188,7 @@ pub(crate) struct Cursor<const N: usize> {
 
 impl<const N: usize> Cursor<N> {
     pub fn new(tau: f64, z: Vector<N>) -> Self {
-        Self {
-            base: 0.0,
-            tau,
-            z,
-            tangents: Vec::new(),
-            h: 0.0,
-            phase: None,
-            stats: Stats::default(),
-        }
+        Self { base: 0.0, tau, z, tangents: Vec::new(), h: 0.0, phase: None, stats: Stats::default() }
     }
 
     /// With a unit tangent vector for each component in `by`: together they become the derivative of the flow by these.
@@ -254,20 +220,8 @@ pub(crate) struct Runner<'a, const N: usize> {
 impl<'a, const N: usize> Runner<'a, N> {
     pub fn new(system: &'a System<N>, options: &Options, frequency: f64) -> Result<Self, LpmError> {
         options.validate()?;
-        check(
-            (1e-6..=1e9).contains(&frequency),
-            "mesh frequency",
-            frequency,
-            "Hz",
-            "between 1e-6 and 1e9",
-        )?;
-        Ok(Self {
-            system,
-            method: options.method_for::<N>()?,
-            options: *options,
-            frequency,
-            control_tangents: false,
-        })
+        check((1e-6..=1e9).contains(&frequency), "mesh frequency", frequency, "Hz", "between 1e-6 and 1e9")?;
+        Ok(Self { system, method: options.method_for::<N>()?, options: *options, frequency, control_tangents: false })
     }
 
     /// Advances `cursor` by `cycles` mesh cycles and shows every accepted step to `observe`.
@@ -286,11 +240,7 @@ impl<'a, const N: usize> Runner<'a, N> {
             let segment = excitation.segments()[index];
             // A stop that misses the end of the segment by rounding is the end of the segment.
             let whole = left >= segment.end - cursor.tau - resolution;
-            let end = if whole {
-                segment.end
-            } else {
-                cursor.tau + left
-            };
+            let end = if whole { segment.end } else { cursor.tau + left };
             left -= end - cursor.tau;
             if end > cursor.tau {
                 self.cross_segment(cursor, &segment, end, &mut observe)?;
@@ -338,35 +288,19 @@ impl<'a, const N: usize> Runner<'a, N> {
                 let StepControl::Adaptive { tolerance } = self.options.step else {
                     break (step, after);
                 };
-                let size = s
-                    .norm(&error, self.method.resolves_all())
-                    .max(self.tangent_error(cursor, &step))
-                    / tolerance;
+                let size =
+                    s.norm(&error, self.method.resolves_all()).max(self.tangent_error(cursor, &step)) / tolerance;
                 if size <= 1.0 && after.is_finite() {
-                    let grow = if size > 0.0 {
-                        0.9 * size.powf(-1.0 / self.method.estimate_power())
-                    } else {
-                        5.0
-                    };
+                    let grow = if size > 0.0 { 0.9 * size.powf(-1.0 / self.method.estimate_power()) } else { 5.0 };
                     // A step cut short by the end of the segment must not shorten the next.
-                    cursor.h = (dtau * grow.clamp(0.2, 5.0))
-                        .max(if last { cursor.h.min(h) } else { 0.0 })
-                        .min(cap);
+                    cursor.h = (dtau * grow.clamp(0.2, 5.0)).max(if last { cursor.h.min(h) } else { 0.0 }).min(cap);
                     break (step, after);
                 }
                 cursor.stats.rejected += 1;
-                let shrink = if size.is_finite() {
-                    0.9 * size.powf(-1.0 / self.method.estimate_power())
-                } else {
-                    0.1
-                };
+                let shrink = if size.is_finite() { 0.9 * size.powf(-1.0 / self.method.estimate_power()) } else { 0.1 };
                 h = dtau * shrink.clamp(0.1, 0.9);
                 if h < 1e-13 * (1.0 + segment.end) {
-                    return Err(LpmError::StepUnderflow {
-                        phase: cursor.base + tau,
-                        step: h,
-                        tolerance,
-                    });
+                    return Err(LpmError::StepUnderflow { phase: cursor.base + tau, step: h, tolerance });
                 }
             };
             let dtau = step.span() * f;
@@ -382,11 +316,7 @@ impl<'a, const N: usize> Runner<'a, N> {
                 after,
             };
             let mut taken = step;
-            let cut = if stuck > 2 {
-                None
-            } else {
-                events::find(self, &record, &mut cursor.stats.event_trials)
-            };
+            let cut = if stuck > 2 { None } else { events::find(self, &record, &mut cursor.stats.event_trials) };
             let mut new_tau = if reached_end { end } else { tau + dtau };
             if let Some(cut) = cut {
                 record.dtau *= cut.theta;
@@ -397,14 +327,10 @@ impl<'a, const N: usize> Runner<'a, N> {
             } else if stuck > 2 {
                 // Contact neither begins nor ends here (grazing to rounding): leave the boundary, then look again.
                 stuck = 0;
-                record.next = Some(s.phase(segment, new_tau.min(end), f, &record.after))
-                    .filter(|p| *p != phase);
+                record.next = Some(s.phase(segment, new_tau.min(end), f, &record.after)).filter(|p| *p != phase);
             }
             if !record.after.is_finite() || record.after.q.iter().any(|q| q.abs() > s.bound()) {
-                return Err(LpmError::Unbounded {
-                    phase: cursor.base + tau,
-                    limit: s.bound(),
-                });
+                return Err(LpmError::Unbounded { phase: cursor.base + tau, limit: s.bound() });
             }
             self.carry_tangents(cursor, &record, &taken);
             cursor.stats.steps += 1;
@@ -417,10 +343,7 @@ impl<'a, const N: usize> Runner<'a, N> {
                 if here - window.0 > event_span {
                     window = (here, 0);
                 } else if window.1 > self.options.max_events_per_cycle {
-                    return Err(LpmError::TooManyEvents {
-                        phase: here,
-                        limit: self.options.max_events_per_cycle,
-                    });
+                    return Err(LpmError::TooManyEvents { phase: here, limit: self.options.max_events_per_cycle });
                 }
             }
             cursor.z = record.after;
@@ -440,12 +363,7 @@ impl<'a, const N: usize> Runner<'a, N> {
             let e = linear.apply(self.system, t).1;
             self.system.norm(&e, self.method.resolves_all()) * self.system.unit(j)
         };
-        cursor
-            .tangents
-            .iter()
-            .enumerate()
-            .map(size)
-            .fold(0.0, f64::max)
+        cursor.tangents.iter().enumerate().map(size).fold(0.0, f64::max)
     }
 
     /// Length of the next trial step (mesh cycles).
@@ -474,9 +392,7 @@ impl<'a, const N: usize> Runner<'a, N> {
         }
         let s = self.system;
         let linear = taken.homogeneous();
-        let jump = record
-            .next
-            .and_then(|next| events::saltation(self, record, next));
+        let jump = record.next.and_then(|next| events::saltation(self, record, next));
         for t in &mut cursor.tangents {
             *t = linear.apply(s, t).0;
             if let Some((column, row_scale)) = &jump {

@@ -26,41 +26,13 @@ const DP_A: [[f64; 6]; 7] = [
     [0.2, 0.0, 0.0, 0.0, 0.0, 0.0],
     [3.0 / 40.0, 9.0 / 40.0, 0.0, 0.0, 0.0, 0.0],
     [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0, 0.0, 0.0, 0.0],
-    [
-        19372.0 / 6561.0,
-        -25360.0 / 2187.0,
-        64448.0 / 6561.0,
-        -212.0 / 729.0,
-        0.0,
-        0.0,
-    ],
-    [
-        9017.0 / 3168.0,
-        -355.0 / 33.0,
-        46732.0 / 5247.0,
-        49.0 / 176.0,
-        -5103.0 / 18656.0,
-        0.0,
-    ],
-    [
-        35.0 / 384.0,
-        0.0,
-        500.0 / 1113.0,
-        125.0 / 192.0,
-        -2187.0 / 6784.0,
-        11.0 / 84.0,
-    ],
+    [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0, 0.0, 0.0],
+    [9017.0 / 3168.0, -355.0 / 33.0, 46732.0 / 5247.0, 49.0 / 176.0, -5103.0 / 18656.0, 0.0],
+    [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
 ];
 /// Order 5 minus order 4 weights.
-const DP_E: [f64; 7] = [
-    71.0 / 57600.0,
-    0.0,
-    -71.0 / 16695.0,
-    71.0 / 1920.0,
-    -17253.0 / 339200.0,
-    22.0 / 525.0,
-    -1.0 / 40.0,
-];
+const DP_E: [f64; 7] =
+    [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
 
 const SD_G: f64 = 0.25;
 const SD_C: [f64; 6] = [0.0, 0.5, 83.0 / 250.0, 31.0 / 50.0, 17.0 / 20.0, 1.0];
@@ -68,27 +40,9 @@ const SD_A: [[f64; 5]; 6] = [
     [0.0; 5],
     [0.25, 0.0, 0.0, 0.0, 0.0],
     [8611.0 / 62500.0, -1743.0 / 31250.0, 0.0, 0.0, 0.0],
-    [
-        5012029.0 / 34652500.0,
-        -654441.0 / 2922500.0,
-        174375.0 / 388108.0,
-        0.0,
-        0.0,
-    ],
-    [
-        15267082809.0 / 155376265600.0,
-        -71443401.0 / 120774400.0,
-        730878875.0 / 902184768.0,
-        2285395.0 / 8070912.0,
-        0.0,
-    ],
-    [
-        82889.0 / 524892.0,
-        0.0,
-        15625.0 / 83664.0,
-        69875.0 / 102672.0,
-        -2260.0 / 8211.0,
-    ],
+    [5012029.0 / 34652500.0, -654441.0 / 2922500.0, 174375.0 / 388108.0, 0.0, 0.0],
+    [15267082809.0 / 155376265600.0, -71443401.0 / 120774400.0, 730878875.0 / 902184768.0, 2285395.0 / 8070912.0, 0.0],
+    [82889.0 / 524892.0, 0.0, 15625.0 / 83664.0, 69875.0 / 102672.0, -2260.0 / 8211.0],
 ];
 const SD_BHAT: [f64; 6] = [
     4586570599.0 / 29645900160.0,
@@ -140,12 +94,7 @@ impl Step {
             Method::Magnus => magnus(h, system.mass[0], &co),
             _ => [[[0.0; 3]; 2]; 2],
         };
-        Self {
-            method,
-            h,
-            co,
-            maps,
-        }
+        Self { method, h, co, maps }
     }
 
     /// Length of the step (s).
@@ -155,11 +104,7 @@ impl Step {
 
     /// The same step for differences of solutions.
     pub fn homogeneous(&self) -> Self {
-        Self {
-            co: self.co.map(Coefs::homogeneous),
-            maps: self.maps.map(|m| m.map(|[a, b, _]| [a, b, 0.0])),
-            ..*self
-        }
+        Self { co: self.co.map(Coefs::homogeneous), maps: self.maps.map(|m| m.map(|[a, b, _]| [a, b, 0.0])), ..*self }
     }
 
     /// New state and an estimate of the local error.
@@ -178,11 +123,7 @@ impl Step {
         }
     }
 
-    fn dormand_prince<const N: usize>(
-        &self,
-        s: &System<N>,
-        z: &Vector<N>,
-    ) -> (Vector<N>, Vector<N>) {
+    fn dormand_prince<const N: usize>(&self, s: &System<N>, z: &Vector<N>) -> (Vector<N>, Vector<N>) {
         let h = self.h;
         let (mut kq, mut kv) = ([[0.0; N]; 7], [[0.0; N]; 7]);
         let mut y = *z;
@@ -281,10 +222,7 @@ fn magnus(h: f64, m: f64, co: &[Coefs; 7]) -> [Affine; 2] {
         a3[1][i] = 10.0 / 3.0 * h * (r3[i] - 2.0 * r2[i] + r1[i]);
     }
     let c1 = bracket(&a1, &a2);
-    let c2 = combine(&[(
-        -1.0 / 60.0,
-        &bracket(&a1, &combine(&[(2.0, &a3), (1.0, &c1)])),
-    )]);
+    let c2 = combine(&[(-1.0 / 60.0, &bracket(&a1, &combine(&[(2.0, &a3), (1.0, &c1)])))]);
     let left = combine(&[(-20.0, &a1), (-1.0, &a3), (1.0, &c1)]);
     let c3 = bracket(&left, &combine(&[(1.0, &a2), (1.0, &c2)]));
     let omega = combine(&[(1.0, &a1), (1.0 / 12.0, &a3), (1.0 / 240.0, &c3)]);
@@ -351,12 +289,7 @@ fn exponential(omega: &Affine) -> Affine {
         (r.cosh(), r.sinh() / r)
     };
     let grow = half.exp();
-    let (e11, e12, e21, e22) = (
-        grow * (co + si * dev),
-        grow * si * b,
-        grow * si * c,
-        grow * (co - si * dev),
-    );
+    let (e11, e12, e21, e22) = (grow * (co + si * dev), grow * si * b, grow * si * c, grow * (co - si * dev));
     let (mut x1, mut v1) = (0.0, 0.0);
     if f == 0.0 && g == 0.0 {
         return [[e11, e12, x1], [e21, e22, v1]];
@@ -370,11 +303,7 @@ fn exponential(omega: &Affine) -> Affine {
         v1 += (a * q - c * p) / det;
     } else {
         // Taylor series of phi_1, sum B^n b / (n+1)!, scaled so that it converges quickly.
-        let halvings = if size > 0.5 {
-            (size / 0.5).log2().ceil() as i32
-        } else {
-            0
-        };
+        let halvings = if size > 0.5 { (size / 0.5).log2().ceil() as i32 } else { 0 };
         let t = 0.5f64.powi(halvings);
         let (mut p, mut q) = (f * t, g * t);
         let (mut sp, mut sq) = (p, q);
@@ -410,17 +339,13 @@ mod tests {
             _ => 0.0,
         };
         let b: Vec<f64> = (0..6).map(|j| full(5, j)).collect();
-        let row =
-            |f: &dyn Fn(usize) -> f64, i: usize| (0..6).map(|j| full(i, j) * f(j)).sum::<f64>();
+        let row = |f: &dyn Fn(usize) -> f64, i: usize| (0..6).map(|j| full(i, j) * f(j)).sum::<f64>();
         let dot = |w: &[f64], f: &dyn Fn(usize) -> f64| (0..6).map(|j| w[j] * f(j)).sum::<f64>();
         let c = |j: usize| SD_C[j];
         for (i, &ci) in SD_C.iter().enumerate() {
             assert!((row(&|_| 1.0, i) - ci).abs() < 1e-14, "row {i}");
             if i > 0 {
-                assert!(
-                    (row(&c, i) - 0.5 * ci * ci).abs() < 1e-14,
-                    "stage order 2, row {i}"
-                );
+                assert!((row(&c, i) - 0.5 * ci * ci).abs() < 1e-14, "stage order 2, row {i}");
             }
         }
         let near = |a: f64, b: f64, what: &str| assert!((a - b).abs() < 1e-13, "{what}: {a} {b}");
@@ -431,22 +356,14 @@ mod tests {
         }
         near(dot(&b, &|j| c(j).powi(3)), 0.25, "order 4");
         near(dot(&b, &|i| c(i) * row(&c, i)), 0.125, "order 4");
-        near(
-            dot(&b, &|i| row(&|j| c(j) * c(j), i)),
-            1.0 / 12.0,
-            "order 4",
-        );
+        near(dot(&b, &|i| row(&|j| c(j) * c(j), i)), 1.0 / 12.0, "order 4");
         near(dot(&b, &|i| row(&|j| row(&c, j), i)), 1.0 / 24.0, "order 4");
         for k in 0..5u32 {
             let s: f64 = (0..6).map(|j| DP_A[6][j] * DP_C[j].powi(k as i32)).sum();
             near(s, 1.0 / f64::from(k + 1), "Dormand-Prince quadrature");
         }
         for i in 1..7 {
-            near(
-                (0..i).map(|j| DP_A[i][j]).sum(),
-                DP_C[i],
-                "Dormand-Prince row",
-            );
+            near((0..i).map(|j| DP_A[i][j]).sum(), DP_C[i], "Dormand-Prince row");
         }
         near(DP_E.iter().sum(), 0.0, "Dormand-Prince error weights");
     }
@@ -478,10 +395,7 @@ mod tests {
             }
             let (x, v) = image(&exponential(o), x0, v0);
             let tol = 1e-13 * (1.0 + sum[0].abs().max(sum[1].abs()));
-            assert!(
-                (x - sum[0]).abs() < tol && (v - sum[1]).abs() < tol,
-                "case {n}: {x} {v} against {sum:?}"
-            );
+            assert!((x - sum[0]).abs() < tol && (v - sum[1]).abs() < tol, "case {n}: {x} {v} against {sum:?}");
         }
     }
 }

@@ -25,12 +25,7 @@ pub struct Trace {
 
 impl Exact {
     pub fn run(&self, cycles: usize, x0: f64, v0: f64) -> Trace {
-        let mut out = Trace {
-            x: x0,
-            v: v0,
-            events: Vec::new(),
-            ends: Vec::new(),
-        };
+        let mut out = Trace { x: x0, v: v0, events: Vec::new(), ends: Vec::new() };
         let period = 1.0 / self.frequency;
         for c in 0..cycles {
             for (i, &(start, k, e)) in self.pieces.iter().enumerate() {
