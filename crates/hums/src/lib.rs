@@ -48,7 +48,11 @@ pub mod envelope;
 mod error;
 pub mod indicator;
 pub mod moments;
+pub mod resample;
 pub mod signal;
 pub mod spectrum;
+mod spline;
+pub mod tachometer;
+pub mod tsa;
 
 pub use error::{HumsError, Result};
