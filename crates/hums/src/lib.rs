@@ -51,10 +51,12 @@ pub mod modal_fit;
 pub mod moments;
 pub mod phenomenon;
 pub mod resample;
+pub mod separation;
 pub mod signal;
 pub mod spectrum;
 mod spline;
 pub mod tachometer;
+pub mod threshold;
 pub mod tsa;
 
 pub use error::{HumsError, Result};
