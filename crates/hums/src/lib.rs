@@ -47,6 +47,8 @@ pub mod difference;
 pub mod envelope;
 mod error;
 pub mod indicator;
+#[cfg(feature = "io")]
+pub mod io;
 pub mod modal_fit;
 pub mod moments;
 pub mod phenomenon;
