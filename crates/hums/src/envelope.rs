@@ -12,8 +12,9 @@
 
 use crate::error::{HumsError, Result, require_finite, require_len};
 use crate::spectrum::{Spectrum, forward};
-use rustfft::{FftPlanner, num_complex::Complex};
+use rustfft::{Fft, FftPlanner, num_complex::Complex};
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 /// Analytic signal `x + i H[x]` of the whole band (mean included).
 ///
@@ -24,7 +25,12 @@ pub fn analytic_signal(signal: &[f64]) -> Result<Vec<Complex<f64>>> {
     require_finite("analytic signal", signal)?;
     let bins = forward(&mut signal.to_vec());
     let highest = bins.len() - 1;
-    Ok(one_sided_inverse(&bins, signal.len(), 0..=highest))
+    Ok(one_sided_inverse(
+        &bins,
+        signal.len(),
+        0..=highest,
+        inverse_plan(signal.len()).as_ref(),
+    ))
 }
 
 /// Envelope `|x + i H[x]|` of the whole band, unit of the signal.
@@ -32,7 +38,7 @@ pub fn analytic_signal(signal: &[f64]) -> Result<Vec<Complex<f64>>> {
 /// # Errors
 /// Empty signal or non-finite sample.
 pub fn envelope(signal: &[f64]) -> Result<Vec<f64>> {
-    Ok(analytic_signal(signal)?.iter().map(|z| z.norm()).collect())
+    Ok(moduli(&analytic_signal(signal)?))
 }
 
 /// Amplitude spectrum of the envelope, its mean removed (rectangular window).
@@ -79,7 +85,13 @@ pub(crate) fn demodulate_bins(
     carrier: usize,
     half_width: usize,
 ) -> Result<Demodulated> {
-    let z = band_analytic(bins, samples, carrier, half_width)?;
+    let z = band_analytic(
+        bins,
+        samples,
+        carrier,
+        half_width,
+        inverse_plan(samples).as_ref(),
+    )?;
     let mut phase = Vec::with_capacity(samples);
     let mut last = 0.0;
     for (n, value) in z.iter().enumerate() {
@@ -97,7 +109,7 @@ pub(crate) fn demodulate_bins(
     }
     Ok(Demodulated {
         band: z.iter().map(|v| v.re).collect(),
-        amplitude: z.iter().map(|v| v.norm()).collect(),
+        amplitude: moduli(&z),
         phase,
     })
 }
@@ -107,6 +119,7 @@ pub(crate) fn band_analytic(
     samples: usize,
     carrier: usize,
     half_width: usize,
+    plan: &dyn Fft<f64>,
 ) -> Result<Vec<Complex<f64>>> {
     if half_width == 0 || half_width >= carrier {
         return Err(HumsError::Parameter {
@@ -127,6 +140,7 @@ pub(crate) fn band_analytic(
         bins,
         samples,
         carrier - half_width..=upper,
+        plan,
     ))
 }
 
@@ -135,12 +149,30 @@ fn one_sided_inverse(
     bins: &[Complex<f64>],
     samples: usize,
     range: std::ops::RangeInclusive<usize>,
+    plan: &dyn Fft<f64>,
 ) -> Vec<Complex<f64>> {
     let mut z = vec![Complex::new(0.0, 0.0); samples];
     for k in range {
         let sides = if k == 0 || 2 * k == samples { 1.0 } else { 2.0 };
         z[k] = bins[k] * (sides / samples as f64);
     }
-    FftPlanner::new().plan_fft_inverse(samples).process(&mut z);
+    plan.process(&mut z);
     z
+}
+
+/// Plan for the way back of the analytic signal.
+pub(crate) fn inverse_plan(samples: usize) -> Arc<dyn Fft<f64>> {
+    FftPlanner::new().plan_fft_inverse(samples)
+}
+
+/// Moduli `|z|`; without the care of `hypot` where squares can neither overflow nor vanish.
+pub(crate) fn moduli(z: &[Complex<f64>]) -> Vec<f64> {
+    let largest = z
+        .iter()
+        .fold(0.0_f64, |m, v| m.max(v.re.abs()).max(v.im.abs()));
+    if (1e-140..1e140).contains(&largest) {
+        z.iter().map(|v| v.norm_sqr().sqrt()).collect()
+    } else {
+        z.iter().map(|v| v.norm()).collect()
+    }
 }

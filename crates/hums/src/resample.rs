@@ -65,6 +65,9 @@ pub struct Resampler {
     method: Interpolation,
     /// Kernel value and slope (per table step) at `i / TABLE` samples, for i = 0..=L * TABLE.
     kernel: Vec<[f64; 2]>,
+    /// The same kernel by phase: for phase j of 0..=TABLE the 2 L values at taps `k - j / TABLE`,
+    /// k = 1 - L..=L, then their 2 L slopes per phase step.
+    phases: Vec<f64>,
     slopes: Vec<f64>,
 }
 
@@ -94,9 +97,14 @@ impl Resampler {
             }
             _ => Vec::new(),
         };
+        let phases = match method {
+            Interpolation::BandLimited { half_width, .. } => by_phase(&kernel, half_width),
+            _ => Vec::new(),
+        };
         Ok(Self {
             method,
             kernel,
+            phases,
             slopes: Vec::new(),
         })
     }
@@ -151,13 +159,41 @@ impl Resampler {
                 let step = mean_step(positions);
                 let cutoff = if step > 1.0 { 1.0 / step } else { 1.0 };
                 let reach = half_width as f64 / cutoff;
-                out.extend(
-                    positions
-                        .iter()
-                        .map(|&p| self.windowed_sinc(signal, p, cutoff, reach)),
-                );
+                out.extend(positions.iter().map(
+                    |&p| match self.whole_kernel(signal, p, half_width) {
+                        Some(value) if step <= 1.0 => value,
+                        _ => self.windowed_sinc(signal, p, cutoff, reach),
+                    },
+                ));
             }
         }
+    }
+
+    /// Without a lowered cut-off and away from the ends: all taps share one phase, so that Hermite
+    /// interpolation in the table becomes four dot products of contiguous rows.
+    fn whole_kernel(&self, signal: &[f64], p: f64, half_width: usize) -> Option<f64> {
+        let i = p.max(0.0) as usize;
+        let taps = signal.get((i + 1).checked_sub(half_width)?..=i + half_width)?;
+        let place = (p - i as f64) * TABLE as f64;
+        let j = (place as usize).min(TABLE - 1);
+        let u = place - j as f64;
+        let width = 2 * half_width;
+        let rows = &self.phases[2 * width * j..2 * width * (j + 2)];
+        let (y0, rest) = rows.split_at(width);
+        let (s0, rest) = rest.split_at(width);
+        let (y1, s1) = rest.split_at(width);
+        let mut dots = [[0.0; 2]; 4];
+        for (k, x) in taps.chunks_exact(2).enumerate() {
+            for lane in 0..2 {
+                let at = 2 * k + lane;
+                dots[0][lane] += x[lane] * y0[at];
+                dots[1][lane] += x[lane] * s0[at];
+                dots[2][lane] += x[lane] * y1[at];
+                dots[3][lane] += x[lane] * s1[at];
+            }
+        }
+        let [y0, s0, y1, s1] = dots.map(|d| d[0] + d[1]);
+        Some(spline::hermite(u, 1.0, [y0, y1], [s0, s1]))
     }
 
     fn windowed_sinc(&self, signal: &[f64], p: f64, cutoff: f64, reach: f64) -> f64 {
@@ -202,6 +238,24 @@ fn kernel_table(half_width: usize, beta: f64) -> Vec<[f64; 2]> {
             [s * w, (s_slope * w + s * w_slope) / TABLE as f64]
         })
         .collect()
+}
+
+fn by_phase(kernel: &[[f64; 2]], half_width: usize) -> Vec<f64> {
+    let width = 2 * half_width;
+    let mut rows = Vec::with_capacity(2 * width * (TABLE + 1));
+    for j in 0..=TABLE {
+        // Distance of tap k = m + 1 - L from the position, in table steps, with its sign.
+        let taps = (0..width).map(|m| {
+            let steps = (m as i64 + 1 - half_width as i64) * TABLE as i64 - j as i64;
+            let [value, slope] = kernel[steps.unsigned_abs() as usize];
+            // The distance falls as the phase grows, for taps ahead.
+            (value, if steps > 0 { -slope } else { slope })
+        });
+        let (values, slopes): (Vec<f64>, Vec<f64>) = taps.unzip();
+        rows.extend(values);
+        rows.extend(slopes);
+    }
+    rows
 }
 
 /// `sin(pi x) / (pi x)` and its derivative.

@@ -25,8 +25,14 @@ const LINE_FLOOR: f64 = 64.0 * f64::EPSILON;
 /// Sideband pairs in the sideband energy ratio, by its published definition.
 pub const SER_PAIRS: usize = 6;
 
+/// Size of rounding in the spectrum's amplitudes. The larger of real and imaginary part stands in for
+/// the modulus: no overflow, no square roots.
 fn floor_of(spectrum: &Spectrum) -> f64 {
-    LINE_FLOOR * spectrum.amplitudes().iter().copied().fold(0.0, f64::max)
+    let largest = spectrum
+        .bins()
+        .iter()
+        .fold(0.0_f64, |m, bin| m.max(bin.re.abs()).max(bin.im.abs()));
+    LINE_FLOOR * 2.0 * largest / spectrum.samples() as f64
 }
 
 /// Zero-order figure of merit FM0: peak to peak over the sum of the first `harmonics` mesh

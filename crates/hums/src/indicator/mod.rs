@@ -12,10 +12,12 @@ pub mod gear;
 pub mod trend;
 
 use crate::difference::{RemovalRule, SignalSet, Splitter};
-use crate::envelope::band_analytic;
+use crate::envelope::{band_analytic, inverse_plan, moduli};
 use crate::error::{HumsError, Result};
 use crate::moments::Moments;
 use basic::CrestDefinition;
+use rustfft::Fft;
+use std::sync::Arc;
 
 /// Which signal an indicator was computed from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -194,9 +196,18 @@ fn statistics(signal: &[f64], moments: &Moments, kind: SignalKind) -> Vec<Entry>
 }
 
 /// All indicators of synchronous averages of one length; transforms are planned once.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct GearAnalyzer {
     splitter: Splitter,
+    inverse: Arc<dyn Fft<f64>>,
+}
+
+impl std::fmt::Debug for GearAnalyzer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("GearAnalyzer")
+            .field("splitter", &self.splitter)
+            .finish_non_exhaustive()
+    }
 }
 
 /// What [`GearAnalyzer::analyze`] finds.
@@ -238,6 +249,7 @@ impl GearAnalyzer {
     pub fn new(samples: usize, rule: &RemovalRule) -> Result<Self> {
         Ok(Self {
             splitter: Splitter::new(samples, rule)?,
+            inverse: inverse_plan(samples),
         })
     }
 
@@ -253,7 +265,7 @@ impl GearAnalyzer {
         let of_residual = Moments::of(&signals.residual)?;
         let of_difference = Moments::of(&signals.difference)?;
         let of_regular = Moments::of(&signals.regular)?;
-        let envelope = mesh_envelope(&signals, mesh);
+        let envelope = mesh_envelope(&signals, mesh, self.inverse.as_ref());
 
         let mut table = statistics(average, &of_average, SignalKind::Average);
         let mut gear = |indicator, signal, value| {
@@ -343,8 +355,8 @@ fn unless_rounding<'a>(part: &'a Moments, whole: &Moments) -> Result<&'a Moments
 }
 
 /// Envelope of the band about the mesh fundamental that reaches half way to its neighbours.
-fn mesh_envelope(signals: &SignalSet, mesh: usize) -> Result<Vec<f64>> {
+fn mesh_envelope(signals: &SignalSet, mesh: usize, plan: &dyn Fft<f64>) -> Result<Vec<f64>> {
     let samples = signals.spectrum.samples();
-    let z = band_analytic(signals.spectrum.bins(), samples, mesh, mesh / 2)?;
-    Ok(z.iter().map(|v| v.norm()).collect())
+    let z = band_analytic(signals.spectrum.bins(), samples, mesh, mesh / 2, plan)?;
+    Ok(moduli(&z))
 }
