@@ -237,13 +237,24 @@ impl Splitter {
         require_finite("difference signal", average)?;
         let mut input = average.to_vec();
         let mut bins = self.forward.make_output_vec();
-        let outcome = self.forward.process(&mut input, &mut bins);
+        // One buffer of bins and one of scratch serve all transforms.
+        let length = self
+            .forward
+            .get_scratch_len()
+            .max(self.inverse.get_scratch_len());
+        let mut scratch = vec![Complex::new(0.0, 0.0); length];
+        let outcome = self
+            .forward
+            .process_with_scratch(&mut input, &mut bins, &mut scratch);
         debug_assert!(outcome.is_ok());
-        let residual = self.without(&bins, &self.residual_orders, input);
+        let mut kept = bins.clone();
+        let residual = self.without(&self.residual_orders, &mut kept, &mut scratch, input);
         let difference = if self.rule.sideband_pairs == 0 {
             residual.clone()
         } else {
-            self.without(&bins, &self.difference_orders, vec![0.0; n])
+            kept.copy_from_slice(&bins);
+            let out = vec![0.0; n];
+            self.without(&self.difference_orders, &mut kept, &mut scratch, out)
         };
         let regular = average
             .iter()
@@ -258,9 +269,15 @@ impl Splitter {
         })
     }
 
-    fn without(&self, bins: &[Complex<f64>], orders: &[usize], mut out: Vec<f64>) -> Vec<f64> {
+    /// Signal of the bins without some orders; `kept` is used up.
+    fn without(
+        &self,
+        orders: &[usize],
+        kept: &mut [Complex<f64>],
+        scratch: &mut [Complex<f64>],
+        mut out: Vec<f64>,
+    ) -> Vec<f64> {
         let n = out.len();
-        let mut kept: Vec<Complex<f64>> = bins.to_vec();
         for &order in orders {
             kept[order] = Complex::new(0.0, 0.0);
         }
@@ -269,7 +286,7 @@ impl Splitter {
         if n % 2 == 0 {
             kept[n / 2].im = 0.0;
         }
-        let outcome = self.inverse.process(&mut kept, &mut out);
+        let outcome = self.inverse.process_with_scratch(kept, &mut out, scratch);
         debug_assert!(outcome.is_ok());
         let scale = 1.0 / n as f64;
         out.iter_mut().for_each(|x| *x *= scale);

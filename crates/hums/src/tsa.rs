@@ -87,9 +87,13 @@ impl Average {
     }
 }
 
-/// Gain of the average over `blocks` periods for an order (cycles per period, any real number).
+/// Gain of the average over `blocks` periods for an order (cycles per period, any real number; 0 for
+/// NaN and infinity).
 #[must_use]
 pub fn comb_gain(order: f64, blocks: usize) -> f64 {
+    if !order.is_finite() {
+        return 0.0;
+    }
     let n = blocks.max(1) as f64;
     // Distance to the nearest whole order: exact, and the gain has period 1.
     let f = order - order.round();

@@ -178,11 +178,11 @@ impl DampedSine {
         TAU * self.damping / self.root()
     }
 
-    /// `y(t)`, unit of the signal; t in s.
+    /// `y(t)`, unit of the signal; t in s (0 before the delay, and for NaN or infinite times).
     #[must_use]
     pub fn value(&self, t: f64) -> f64 {
         let tau = t - self.delay;
-        if !(tau > 0.0) {
+        if !(tau > 0.0 && tau < f64::INFINITY) {
             return 0.0;
         }
         let decay = TAU * self.natural_frequency * self.damping;
@@ -301,6 +301,9 @@ impl AmplitudeDensity {
     /// (where the density is unbounded but integrable) that extremum's term is left out.
     #[must_use]
     pub fn density(&self, y: f64) -> f64 {
+        if y.is_nan() {
+            return 0.0;
+        }
         self.sum(y, |a| 1.0 / ((a - y.abs()) * (a + y.abs())).sqrt())
     }
 

@@ -95,10 +95,10 @@ impl ModalResponse {
         &self.modes
     }
 
-    /// Value at time t (s), 0 before time 0.
+    /// Value at time t (s), 0 before time 0 (and for NaN or infinite times).
     #[must_use]
     pub fn value(&self, t: f64) -> f64 {
-        if t < 0.0 {
+        if !(t >= 0.0 && t < f64::INFINITY) {
             return 0.0;
         }
         self.modes.iter().map(|mode| mode.value(t)).sum()
