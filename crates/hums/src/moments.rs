@@ -359,6 +359,12 @@ impl MomentAccumulator {
         Ok(())
     }
 
+    /// Samples pushed so far.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.total.count as usize + self.pending.len()
+    }
+
     /// Moments of everything pushed.
     ///
     /// # Errors

@@ -344,8 +344,8 @@ pub struct AngleSignal {
 /// Mech. Syst. Signal Process. 11:187).
 ///
 /// # Errors
-/// Non-finite samples; a rate or `per_turn` that is not positive; [`HumsError::TooShort`] when the
-/// record covers no angle.
+/// Non-finite samples; a rate or `per_turn` that is not positive; [`HumsError::Undefined`] when
+/// record and tachometer share no point of the grid.
 pub fn to_angle(
     signal: &[f64],
     rate: f64,
@@ -371,12 +371,12 @@ pub fn to_angle(
     let end = to.min(((signal.len() - 1) as f64 - pad) / rate);
     let grid = |t: f64| shaft.turn_at(t).map(|turn| turn * per_turn as f64);
     let (Some(low), Some(high)) = (grid(start), grid(end)) else {
-        return Err(no_overlap(WHAT, signal.len()));
+        return Err(no_overlap(WHAT));
     };
     // A grid point within rounding of the range's ends counts as inside.
     let (low, high) = ((low - 1e-9).ceil(), (high + 1e-9).floor());
     if !(start <= end && low <= high) {
-        return Err(no_overlap(WHAT, signal.len()));
+        return Err(no_overlap(WHAT));
     }
     let count = (high - low) as usize + 1;
     let mut positions = Vec::with_capacity(count);
@@ -414,11 +414,10 @@ pub(crate) fn evaluate_piece(
     resampler.evaluate(&signal[from..to], &local, out);
 }
 
-fn no_overlap(what: &'static str, samples: usize) -> HumsError {
-    HumsError::TooShort {
+fn no_overlap(what: &'static str) -> HumsError {
+    HumsError::Undefined {
         what,
-        needed: samples + 1,
-        found: samples,
+        reason: "record and tachometer share no point of the angle grid",
     }
 }
 

@@ -112,14 +112,14 @@ pub fn average(signal: &[f64], rate: f64, shaft: &Shaft, options: &TsaOptions) -
     let mut averager = Averager::new(rate, shaft.clone(), options.clone())?;
     averager.complete = true;
     averager.take_blocks(signal, 0);
-    averager.sums.finish(signal.len())
+    averager.sums.finish()
 }
 
 /// Averages consecutive whole periods of a signal that is already sampled at equal angles
 /// (simulations), `per_period` samples each; a rest at the end is left out.
 ///
 /// # Errors
-/// [`HumsError::TooShort`] when there is not one whole period without gaps;
+/// [`HumsError::Undefined`] when there is not one whole period without gaps;
 /// [`HumsError::Parameter`] for `per_period` = 0.
 pub fn average_periods(
     signal: &[f64],
@@ -134,7 +134,7 @@ pub fn average_periods(
     {
         sums.add(block);
     }
-    sums.finish(signal.len())
+    sums.finish()
 }
 
 /// Running mean and spread of blocks (Welford 1962).
@@ -170,17 +170,15 @@ impl Sums {
         }
     }
 
-    fn finish(self, samples_seen: usize) -> Result<Average> {
+    fn finish(self) -> Result<Average> {
         if self.blocks == 0 {
-            let what = if self.skipped > 0 {
-                "synchronous average (every period has a gap)"
-            } else {
-                "synchronous average (no whole period in the record)"
-            };
-            return Err(HumsError::TooShort {
-                what,
-                needed: samples_seen.max(self.mean.len()) + 1,
-                found: samples_seen,
+            return Err(HumsError::Undefined {
+                what: "synchronous average",
+                reason: if self.skipped > 0 {
+                    "every period has a gap"
+                } else {
+                    "no whole period lies inside record and tachometer"
+                },
             });
         }
         let divisor = (self.blocks.max(2) - 1) as f64;
@@ -272,13 +270,12 @@ impl Averager {
     /// The average of everything pushed.
     ///
     /// # Errors
-    /// [`HumsError::TooShort`] when no period without gaps lies inside record and tachometer.
+    /// [`HumsError::Undefined`] when no period without gaps lies inside record and tachometer.
     pub fn finish(mut self) -> Result<Average> {
         self.complete = true;
         let buffer = std::mem::take(&mut self.buffer);
         self.take_blocks(&buffer, self.offset);
-        let seen = self.offset + buffer.len();
-        self.sums.finish(seen)
+        self.sums.finish()
     }
 
     /// Averages every block inside `samples`, the first of which has record index `offset`. Returns

@@ -291,3 +291,22 @@ fn analytic_na4_of_growing_records() {
     );
     assert_eq!(locked.records(), 3);
 }
+
+#[test]
+fn invariant_streamed_tables_have_the_same_bits() {
+    let x: Vec<f64> = gaussian(30_011, 55).iter().map(|g| 0.3 + 2.0 * g).collect();
+    for kind in [SignalKind::Raw, SignalKind::Difference] {
+        let whole = hums::indicator::signal_indicators(&x, kind).unwrap();
+        for piece in [1, 2, 3, 1000, 4097, 30_011] {
+            let mut stream = hums::indicator::StreamingIndicators::new(kind, 1.0);
+            x.chunks(piece).for_each(|part| stream.push(part).unwrap());
+            assert_eq!(stream.finish().unwrap(), whole, "{piece}");
+        }
+    }
+    let mut stream = hums::indicator::StreamingIndicators::new(SignalKind::Raw, 1.0);
+    stream.push(&[1.0, 2.0]).unwrap();
+    assert!(matches!(
+        stream.push(&[1.0, f64::NAN]),
+        Err(HumsError::NotFinite { index: 3, .. })
+    ));
+}

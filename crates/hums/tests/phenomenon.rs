@@ -72,15 +72,13 @@ fn analytic_exact_integrals_match_fine_samples() {
     close(form.rms, square.sqrt(), 1e-8);
 }
 
-/// The density's moments by quadrature: y = A_i sin u, 400 midpoints for each half cycle (the
-/// integrand is periodic and analytic, so that the midpoint rule is exact to rounding).
+/// The density's moments by quadrature: `y = A_i sin u` takes the singularity out of each term, and u
+/// in 0..pi/2 gets 400 midpoints.
 fn quadrature(first: f64, delta: f64, n: usize) -> ClosedForm {
     let mut raw = [0.0; 9];
     for i in 0..n {
         let a = first * (-1.0_f64).powi(i as i32) * (-delta * i as f64 / 2.0).exp();
         for k in 0..400 {
-            // Over a quarter: odd powers are not periodic there; integrate sin^p by Gauss-like
-            // symmetry instead: midpoints in c = cos u, y = a sqrt(1 - c^2), du = dc / sqrt(1 - c^2).
             let u = (f64::from(k) + 0.5) * PI / 800.0;
             for (p, m) in raw.iter_mut().enumerate() {
                 *m += (a * u.sin()).powi(p as i32) / (400 * n) as f64;

@@ -184,6 +184,6 @@ fn extreme_positions_and_parameters() {
     let late = Shaft::from_pulses(&[50.0, 51.0], 1.0).unwrap();
     assert!(matches!(
         to_angle(&x, 1.0, &late, 64, Interpolation::Linear),
-        Err(HumsError::TooShort { .. })
+        Err(HumsError::Undefined { .. })
     ));
 }

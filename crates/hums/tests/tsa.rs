@@ -191,7 +191,7 @@ fn extreme_gaps_leave_blocks_out() {
     x.fill(f64::NAN);
     assert!(matches!(
         average(&x, RATE, &shaft, &options),
-        Err(HumsError::TooShort { .. })
+        Err(HumsError::Undefined { .. })
     ));
     assert!(average(&[], RATE, &shaft, &options).is_err());
     assert!(average(&[1.0], RATE, &shaft, &options).is_err());

@@ -16,7 +16,7 @@
 //! printed under D A.1 is read as `1..N`: dropping the first sample is not a root mean square.
 //! Verified by `tests/indicators.rs`.
 
-use crate::error::{HumsError, Result, finite_or_out_of_range, require_len};
+use crate::error::{HumsError, Result, finite_or_out_of_range};
 use crate::moments::{BLOCK, MomentAccumulator, Moments};
 
 /// Root mean square, unit of the signal.
@@ -128,61 +128,116 @@ pub fn energy_operator(signal: &[f64]) -> Result<f64> {
 }
 
 pub(crate) fn energy_operator_scaled(signal: &[f64], peak: f64) -> Result<f64> {
-    const WHAT: &str = "energy operator";
-    require_len(WHAT, signal, 3)?;
-    let n = signal.len();
-    // Scaling by a power of two keeps the squares in range and is exact.
-    let scale = if peak > 0.0 && peak.is_finite() {
+    let mut accumulator = TeagerAccumulator::with_peak(peak);
+    accumulator
+        .push(signal)
+        .and_then(|()| accumulator.finish(peak))
+        .map_err(|error| match signal.iter().position(|x| !x.is_finite()) {
+            // A fault found in derived samples is restated in terms of the signal's own.
+            Some(index) => HumsError::NotFinite {
+                what: ENERGY_OPERATOR,
+                index,
+                value: signal[index],
+            },
+            None => error,
+        })
+}
+
+const ENERGY_OPERATOR: &str = "energy operator";
+
+/// Streaming kurtosis of the Teager energy; the cyclic ends are added last.
+#[derive(Debug, Clone)]
+pub(crate) struct TeagerAccumulator {
+    /// Power of two the samples are multiplied by, which keeps the squares in range and is exact.
+    scale: f64,
+    first: [f64; 2],
+    last: [f64; 2],
+    count: usize,
+    moments: MomentAccumulator,
+}
+
+/// Power of two near 1 / peak.
+fn inverse_scale(peak: f64) -> f64 {
+    if peak > 0.0 && peak.is_finite() {
         (-peak.log2().floor()).clamp(-1000.0, 1000.0).exp2()
     } else {
         1.0
-    };
-    let teager = |before: f64, x: f64, after: f64| {
-        let x = x * scale;
-        x * x - (after * scale) * (before * scale)
-    };
-    let mut accumulator = MomentAccumulator::default();
-    let mut buffer = [0.0; BLOCK];
-    buffer[0] = teager(signal[n - 1], signal[0], signal[1]);
-    let mut fill = 1;
-    let mut start = 1;
-    while start < n - 1 {
-        let count = (BLOCK - fill).min(n - 1 - start);
-        let window = &signal[start - 1..start + count + 1];
-        for (out, w) in buffer[fill..fill + count].iter_mut().zip(window.windows(3)) {
-            *out = teager(w[0], w[1], w[2]);
-        }
-        start += count;
-        fill += count;
-        if fill == BLOCK {
-            accumulator.push(&buffer).map_err(|e| relocate(e, signal))?;
-            fill = 0;
-        }
     }
-    accumulator
-        .push(&buffer[..fill])
-        .and_then(|()| accumulator.push(&[teager(signal[n - 2], signal[n - 1], signal[0])]))
-        .map_err(|e| relocate(e, signal))?;
-    let moments = accumulator.finish().map_err(|e| relocate(e, signal))?;
-    // Squares carry rounding of order epsilon relative to the squared peak (scaled: below 4).
-    if moments.standard_deviation() <= 16.0 * f64::EPSILON {
-        return Err(HumsError::Undefined {
-            what: WHAT,
-            reason: "the Teager energy is constant",
-        });
-    }
-    moments.standardized(4)
 }
 
-/// Restates a fault found in derived samples in terms of the signal's own.
-fn relocate(error: HumsError, signal: &[f64]) -> HumsError {
-    match signal.iter().position(|x| !x.is_finite()) {
-        Some(index) => HumsError::NotFinite {
-            what: "energy operator",
-            index,
-            value: signal[index],
-        },
-        None => error,
+impl TeagerAccumulator {
+    /// For samples of the order of `peak` (unit of the signal).
+    pub(crate) fn with_peak(peak: f64) -> Self {
+        Self {
+            scale: inverse_scale(peak),
+            first: [0.0; 2],
+            last: [0.0; 2],
+            count: 0,
+            moments: MomentAccumulator::default(),
+        }
+    }
+
+    fn teager(&self, before: f64, x: f64, after: f64) -> f64 {
+        let x = x * self.scale;
+        x * x - (after * self.scale) * (before * self.scale)
+    }
+
+    pub(crate) fn push(&mut self, samples: &[f64]) -> Result<()> {
+        // The seam with what came before, then whole windows.
+        for (i, &x) in samples.iter().take(2).enumerate() {
+            match self.count + i {
+                0 => self.first[0] = x,
+                1 => self.first[1] = x,
+                _ => {
+                    let energy = self.teager(self.last[0], self.last[1], x);
+                    self.moments.push(&[energy])?;
+                }
+            }
+            self.last = [self.last[1], x];
+        }
+        let mut buffer = [0.0; BLOCK];
+        let mut start = 0;
+        while start + 2 < samples.len() {
+            let count = BLOCK.min(samples.len() - 2 - start);
+            let part = &samples[start..start + count + 2];
+            for (out, w) in buffer[..count].iter_mut().zip(part.windows(3)) {
+                *out = self.teager(w[0], w[1], w[2]);
+            }
+            self.moments.push(&buffer[..count])?;
+            start += count;
+        }
+        if let [.., before, last] = *samples {
+            self.last = [before, last];
+        }
+        self.count += samples.len();
+        Ok(())
+    }
+
+    /// The indicator; `peak` is the largest absolute sample pushed.
+    pub(crate) fn finish(mut self, peak: f64) -> Result<f64> {
+        if self.count < 3 {
+            return Err(HumsError::TooShort {
+                what: ENERGY_OPERATOR,
+                needed: 3,
+                found: self.count,
+            });
+        }
+        let ends = [
+            self.teager(self.last[0], self.last[1], self.first[0]),
+            self.teager(self.last[1], self.first[0], self.first[1]),
+        ];
+        self.moments.push(&ends)?;
+        let moments = self.moments.finish()?;
+        // Squares carry rounding of order epsilon relative to the squared peak (4 at most once
+        // multiplied by its own power of two).
+        let unit = self.scale / inverse_scale(peak);
+        if moments.standard_deviation() <= 16.0 * f64::EPSILON * unit * unit {
+            return Err(HumsError::Undefined {
+                what: ENERGY_OPERATOR,
+                reason: "the Teager energy is constant",
+            });
+        }
+        moments.standardized(4)
     }
 }
 

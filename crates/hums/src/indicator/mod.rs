@@ -13,9 +13,9 @@ pub mod trend;
 
 use crate::difference::{RemovalRule, SignalSet, Splitter};
 use crate::envelope::{band_analytic, inverse_plan, moduli};
-use crate::error::{HumsError, Result};
-use crate::moments::Moments;
-use basic::CrestDefinition;
+use crate::error::{HumsError, Result, require_finite};
+use crate::moments::{MomentAccumulator, Moments};
+use basic::{CrestDefinition, TeagerAccumulator};
 use rustfft::Fft;
 use std::sync::Arc;
 
@@ -158,7 +158,78 @@ pub fn signal_indicators(signal: &[f64], kind: SignalKind) -> Result<Vec<Entry>>
     Ok(statistics(signal, &moments, kind))
 }
 
+/// [`signal_indicators`] of a record that arrives in pieces: memory does not grow with it.
+///
+/// The values have the same bits however the record is cut.
+#[derive(Debug, Clone)]
+pub struct StreamingIndicators {
+    kind: SignalKind,
+    moments: MomentAccumulator,
+    /// The first fault of the energy operator (its squares can leave the range of `f64`) is kept
+    /// for its entry.
+    energy: Result<TeagerAccumulator>,
+}
+
+impl StreamingIndicators {
+    /// For samples whose absolute values are of the order of `peak` (unit of the signal); only its
+    /// order of magnitude matters, and only outside 1e-18 to 1e18.
+    #[must_use]
+    pub fn new(kind: SignalKind, peak: f64) -> Self {
+        Self {
+            kind,
+            moments: MomentAccumulator::with_peak(peak),
+            energy: Ok(TeagerAccumulator::with_peak(peak)),
+        }
+    }
+
+    /// Takes the next samples.
+    ///
+    /// # Errors
+    /// [`HumsError::NotFinite`] with the index counted from the first sample ever pushed; the
+    /// accumulator is not usable afterwards.
+    pub fn push(&mut self, samples: &[f64]) -> Result<()> {
+        // Blocks of moments may lag behind, so that gaps are looked for here.
+        require_finite("indicators", samples).map_err(|error| match error {
+            HumsError::NotFinite { what, index, value } => HumsError::NotFinite {
+                what,
+                index: index + self.moments.count(),
+                value,
+            },
+            other => other,
+        })?;
+        self.moments.push(samples)?;
+        if let Ok(energy) = &mut self.energy
+            && let Err(fault) = energy.push(samples)
+        {
+            self.energy = Err(fault);
+        }
+        Ok(())
+    }
+
+    /// The table.
+    ///
+    /// # Errors
+    /// [`HumsError::TooShort`] when nothing was pushed.
+    pub fn finish(self) -> Result<Vec<Entry>> {
+        let moments = self.moments.finish()?;
+        let energy = self.energy.and_then(|e| e.finish(moments.peak()));
+        // Faults of derived samples are faults of range here: the samples themselves are finite.
+        let energy = energy.map_err(|fault| match fault {
+            HumsError::NotFinite { .. } => HumsError::OutOfRange {
+                what: "energy operator",
+            },
+            other => other,
+        });
+        Ok(table_of(&moments, energy, self.kind))
+    }
+}
+
 fn statistics(signal: &[f64], moments: &Moments, kind: SignalKind) -> Vec<Entry> {
+    let energy = basic::energy_operator_scaled(signal, moments.peak());
+    table_of(moments, energy, kind)
+}
+
+fn table_of(moments: &Moments, energy: Result<f64>, kind: SignalKind) -> Vec<Entry> {
     let entry = |indicator, value| Entry {
         indicator,
         signal: kind,
@@ -188,10 +259,7 @@ fn statistics(signal: &[f64], moments: &Moments, kind: SignalKind) -> Vec<Entry>
     } else {
         table.push(entry(Indicator::Kurtosis, moments.standardized(4)));
     }
-    table.push(entry(
-        Indicator::EnergyOperator,
-        basic::energy_operator_scaled(signal, moments.peak()),
-    ));
+    table.push(entry(Indicator::EnergyOperator, energy));
     table
 }
 

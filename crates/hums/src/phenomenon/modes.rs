@@ -98,7 +98,7 @@ impl ModalResponse {
     /// Value at time t (s), 0 before time 0 (and for NaN or infinite times).
     #[must_use]
     pub fn value(&self, t: f64) -> f64 {
-        if !(t >= 0.0 && t < f64::INFINITY) {
+        if !(0.0..f64::INFINITY).contains(&t) {
             return 0.0;
         }
         self.modes.iter().map(|mode| mode.value(t)).sum()
