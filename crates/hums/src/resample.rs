@@ -59,6 +59,10 @@ impl Default for Interpolation {
 /// Samples on either side that a spline needs for its ends to be forgotten: their influence falls
 /// by `2 - sqrt 3` a sample, to 1e-18 after 32.
 const SPLINE_MARGIN: usize = 32;
+/// Samples of an averaging period at most: half a gigabyte.
+pub const MAX_PER_PERIOD: usize = 1 << 26;
+/// Points of an angle grid for each sample of the record at most.
+const MAX_OVERSAMPLING: f64 = 1024.0;
 /// Kernel table resolution, points per sample.
 const TABLE: usize = 512;
 
@@ -378,6 +382,13 @@ pub fn to_angle(
     if !(start <= end && low <= high) {
         return Err(no_overlap(WHAT));
     }
+    if !(high - low < MAX_OVERSAMPLING * signal.len() as f64) {
+        return Err(HumsError::Parameter {
+            parameter: "samples per turn",
+            value: per_turn as f64,
+            allowed: "at most 1024 points of angle for each sample of the record",
+        });
+    }
     let count = (high - low) as usize + 1;
     let mut positions = Vec::with_capacity(count);
     shaft.times_of(low * step, step, count, &mut positions);
@@ -425,16 +436,16 @@ fn no_overlap(what: &'static str) -> HumsError {
 /// or above `rate * period_turns / slowest speed`.
 ///
 /// # Errors
-/// [`HumsError::Parameter`] for a rate or period that is not positive, or above 2^31 samples.
+/// [`HumsError::Parameter`] for a rate or period that is not positive, or above 2^26 samples.
 pub fn samples_per_period(rate: f64, shaft: &Shaft, period_turns: f64) -> Result<usize> {
     require_positive("sampling rate", rate)?;
     require_positive("averaging period", period_turns)?;
     let needed = rate * period_turns / shaft.speed_range().0;
-    if !(needed <= 2_147_483_648.0) {
+    if !(needed <= MAX_PER_PERIOD as f64) {
         return Err(HumsError::Parameter {
             parameter: "samples per averaging period",
             value: needed,
-            allowed: "at most 2^31",
+            allowed: "at most 2^26",
         });
     }
     Ok((needed.ceil() as usize).max(2).next_power_of_two())

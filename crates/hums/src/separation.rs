@@ -88,6 +88,10 @@ pub struct Separated {
     pub coverage: (f64, f64),
 }
 
+/// Teeth at most.
+const MAX_TEETH: usize = 10_000;
+/// Samples a mesh cycle at most.
+const MAX_PER_MESH: usize = 8192;
 /// Weight below which a sample of the turn counts as not covered.
 const LEAST_COVERAGE: f64 = 1e-6;
 
@@ -110,7 +114,7 @@ impl PlanetaryStage {
     /// Samples a carrier turn of the records.
     #[must_use]
     pub fn samples_per_turn(&self) -> usize {
-        self.ring_teeth * self.samples_per_mesh
+        self.ring_teeth.saturating_mul(self.samples_per_mesh)
     }
 
     /// Carrier turns after which the same planet tooth passes the same sensor: `z_p / gcd(z_r, z_p)`.
@@ -132,12 +136,19 @@ impl PlanetaryStage {
             ("sun teeth", self.sun_teeth),
         ] {
             require_positive(parameter, value as f64)?;
+            if value > MAX_TEETH {
+                return Err(HumsError::Parameter {
+                    parameter,
+                    value: value as f64,
+                    allowed: "at most 10000",
+                });
+            }
         }
-        if self.samples_per_mesh < 2 {
+        if !(2..=MAX_PER_MESH).contains(&self.samples_per_mesh) {
             return Err(HumsError::Parameter {
                 parameter: "samples per mesh cycle",
                 value: self.samples_per_mesh as f64,
-                allowed: "at least 2",
+                allowed: "2 to 8192",
             });
         }
         if !(self.window_teeth >= 1.0 && self.window_teeth <= self.ring_teeth as f64) {
@@ -148,11 +159,11 @@ impl PlanetaryStage {
             });
         }
         let angles = self.planet_angles.iter().chain(&self.sensor_angles);
-        match angles.into_iter().find(|a| !a.is_finite()) {
+        match angles.into_iter().find(|a| !(a.abs() <= 1e6)) {
             Some(&value) => Err(HumsError::Parameter {
                 parameter: "planet or sensor angle",
                 value,
-                allowed: "finite",
+                allowed: "at most 1e6 turns in size",
             }),
             None => Ok(()),
         }
@@ -173,6 +184,7 @@ impl PlanetaryStage {
                 allowed: "an index into the planet angles",
             });
         };
+        self.validate()?;
         let mut sums = Sums::new(self.planet_teeth * self.samples_per_mesh);
         self.collect(records, first_turn, psi, 0.0, &mut sums)?;
         sums.finish()
@@ -183,6 +195,7 @@ impl PlanetaryStage {
     /// # Errors
     /// As [`Self::planet`].
     pub fn sun(&self, records: &[&[f64]], first_turn: f64) -> Result<Separated> {
+        self.validate()?;
         let mut sums = Sums::new(self.sun_teeth * self.samples_per_mesh);
         for &psi in &self.planet_angles {
             self.collect(
@@ -205,7 +218,6 @@ impl PlanetaryStage {
         offset: f64,
         sums: &mut Sums,
     ) -> Result<()> {
-        self.validate()?;
         if records.len() != self.sensor_angles.len() {
             return Err(HumsError::LengthMismatch {
                 what: "records and sensors",
@@ -213,11 +225,11 @@ impl PlanetaryStage {
                 right: self.sensor_angles.len(),
             });
         }
-        if !(first_turn.abs() < 1e12) {
+        if !(first_turn.abs() < 1e6) {
             return Err(HumsError::Parameter {
                 parameter: "first turn",
                 value: first_turn,
-                allowed: "finite, below 1e12 in size",
+                allowed: "below 1e6 in size",
             });
         }
         let per_turn = self.samples_per_turn() as f64;

@@ -114,6 +114,9 @@ pub struct RepairedPulses {
 /// Share of missing or extra pulses above which [`repair`] gives up.
 pub const MAX_FAULTY_SHARE: f64 = 0.25;
 
+/// Pulses that may be missing in one place; a longer hole ends in an error anyway.
+const MOST_MISSING: f64 = 1e9;
+
 /// Sorts out missing and extra pulses.
 ///
 /// # Errors
@@ -153,7 +156,7 @@ pub fn repair(times: &[f64]) -> Result<RepairedPulses> {
                 i += 1;
                 continue;
             }
-            None => (i, ratio(i).round() as u64),
+            None => (i, ratio(i).round().min(MOST_MISSING) as u64),
         };
         kept.extra += (chosen - i) as u64;
         kept.missing += steps - 1;
@@ -202,6 +205,9 @@ fn check_increasing(times: &[f64]) -> Result<()> {
     }
 }
 
+/// Slowest speed, Hz; its inverse is the fastest. Far outside anything that turns, far inside `f64`.
+const MIN_SPEED: f64 = 1e-100;
+
 /// Angle of a shaft as a function of time, and back.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shaft {
@@ -228,6 +234,9 @@ impl Shaft {
             });
         }
         let end = (samples - 1) as f64 / rate;
+        if !(MIN_SPEED < speed && speed < 1.0 / MIN_SPEED && (end * speed).is_finite()) {
+            return Err(tachometer("the speed is outside 1e-100 to 1e100 Hz", 0));
+        }
         Ok(Self {
             turns: vec![0.0, end * speed],
             times: vec![0.0, end],
@@ -244,7 +253,7 @@ impl Shaft {
         check_increasing(times)?;
         require_positive("pulses per turn", per_turn)?;
         let turns = (0..times.len()).map(|i| i as f64 / per_turn).collect();
-        Ok(Self::through(turns, times.to_vec()))
+        Self::through(turns, times.to_vec())
     }
 
     /// From repaired pulses, `per_turn` a revolution.
@@ -265,7 +274,7 @@ impl Shaft {
             return Err(tachometer("pulse numbers do not increase", i + 1));
         }
         let turns = pulses.numbers.iter().map(|k| *k as f64 / per_turn);
-        Ok(Self::through(turns.collect(), pulses.times.clone()))
+        Self::through(turns.collect(), pulses.times.clone())
     }
 
     /// Pulse channel to shaft in one call: [`pulse_times`], [`repair`], [`Self::from_repaired`].
@@ -282,29 +291,43 @@ impl Shaft {
         Ok((Self::from_repaired(&pulses, per_turn)?, pulses))
     }
 
-    fn through(turns: Vec<f64>, times: Vec<f64>) -> Self {
+    fn through(turns: Vec<f64>, times: Vec<f64>) -> Result<Self> {
+        let speeds = turns.windows(2).zip(times.windows(2));
+        let sound = |(a, t): (&[f64], &[f64])| {
+            let speed = (a[1] - a[0]) / (t[1] - t[0]);
+            MIN_SPEED < speed && speed < 1.0 / MIN_SPEED
+        };
+        if let Some(i) = speeds.into_iter().position(|pair| !sound(pair)) {
+            return Err(tachometer("the speed is outside 1e-100 to 1e100 Hz", i));
+        }
         let mut slopes = spline::slopes(&turns, &times);
         let secant = |i: usize| (times[i + 1] - times[i]) / (turns[i + 1] - turns[i]);
         let n = slopes.len();
         for (i, slope) in slopes.iter_mut().enumerate() {
             let left = secant(i.saturating_sub(1));
             let right = secant(i.min(n - 2));
-            *slope = slope.clamp(0.0, 3.0 * left.min(right));
+            *slope = slope.max(0.0).min(3.0 * left.min(right));
         }
-        Self {
+        Ok(Self {
             turns,
             times,
             slopes,
-        }
+        })
     }
 
     /// Another shaft geared to this one: it makes `ratio` turns for each turn of this one
     /// (tooth numbers: `z_this / z_other`); three planet passes a carrier turn are a ratio of 3.
     ///
     /// # Errors
-    /// [`HumsError::Parameter`] unless the ratio is positive.
+    /// [`HumsError::Parameter`] unless the ratio is between 1e-9 and 1e9.
     pub fn geared(&self, ratio: f64) -> Result<Self> {
-        require_positive("gear ratio", ratio)?;
+        if !(1e-9..=1e9).contains(&ratio) {
+            return Err(HumsError::Parameter {
+                parameter: "gear ratio",
+                value: ratio,
+                allowed: "1e-9 to 1e9",
+            });
+        }
         Ok(Self {
             turns: self.turns.iter().map(|x| x * ratio).collect(),
             times: self.times.clone(),

@@ -232,14 +232,38 @@ impl Averager {
     pub fn new(rate: f64, shaft: Shaft, options: TsaOptions) -> Result<Self> {
         require_positive("sampling rate", rate)?;
         require_positive("averaging period", options.period_turns)?;
-        if options.samples_per_period < 2 {
+        if !(2..=crate::resample::MAX_PER_PERIOD).contains(&options.samples_per_period) {
             return Err(HumsError::Parameter {
                 parameter: "samples per averaging period",
                 value: options.samples_per_period as f64,
-                allowed: "at least 2",
+                allowed: "2 to 2^26",
             });
         }
-        let next = (shaft.turn_range().0 / options.period_turns - 1e-9).ceil();
+        // Also bounds the number of blocks by that of samples.
+        let shortest = rate * options.period_turns / shaft.speed_range().1;
+        if !(shortest >= 2.0) {
+            return Err(HumsError::Parameter {
+                parameter: "averaging period in samples of the record",
+                value: shortest,
+                allowed: "at least 2 at the fastest speed",
+            });
+        }
+        // The first whole period after sample 0; pulses may come before it.
+        let (first_turn, last_turn) = shaft.turn_range();
+        let start = if shaft.time_range().0 >= 0.0 {
+            first_turn
+        } else {
+            shaft.turn_at(0.0).unwrap_or(last_turn)
+        };
+        let next = (start / options.period_turns - 1e-9).ceil();
+        // Whole numbers stay exact as blocks are counted on.
+        if !(next.abs() < 1e15) {
+            return Err(HumsError::Parameter {
+                parameter: "averaging period",
+                value: options.period_turns,
+                allowed: "above 1e-15 of the turns before the record",
+            });
+        }
         Ok(Self {
             rate,
             shaft,

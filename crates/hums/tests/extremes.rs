@@ -8,8 +8,11 @@ use hums::envelope::{analytic_signal, demodulate, envelope, envelope_spectrum};
 use hums::indicator::trend::{Memory, QuasiKurtosis};
 use hums::indicator::{Entry, GearAnalyzer, Indicator, SignalKind, basic, signal_indicators};
 use hums::moments::{MomentAccumulator, Moments};
+use hums::resample::{Interpolation, to_angle};
 use hums::signal::{detrend, fill_gaps, inspect, longest_finite_run};
 use hums::spectrum::{Spectrum, Window, spectrogram};
+use hums::tachometer::{PulseOptions, Shaft, repair};
+use hums::tsa::{TsaOptions, average};
 use proptest::prelude::*;
 
 fn finite_or_reason(table: &[Entry]) {
@@ -255,6 +258,38 @@ proptest! {
             && let Ok(analysis) = a.analyze(&x)
         {
             finite_or_reason(&analysis.table);
+        }
+    }
+
+    #[test]
+    fn extreme_any_tachometer_gives_averages_or_reasons(
+        steps in prop::collection::vec(prop_oneof![0.0..2.0_f64, 1e-320..1e300_f64, Just(1.0)], 1..40),
+        start in prop_oneof![-50.0..50.0_f64, Just(-1e15)],
+        per_turn in prop_oneof![0.1..8.0_f64, 1e-320..1e300_f64],
+        period in prop_oneof![0.1..3.0_f64, 1e-300..1e300_f64],
+        interpolation in prop_oneof![
+            Just(Interpolation::Linear), Just(Interpolation::CubicSpline), Just(Interpolation::default())
+        ],
+    ) {
+        let x = gaussian(400, 1);
+        let times: Vec<f64> = steps.iter().scan(start, |t, d| { *t += d; Some(*t) }).collect();
+        let shafts = [
+            Shaft::from_pulses(&times, per_turn),
+            repair(&times).and_then(|p| Shaft::from_repaired(&p, per_turn)),
+            Shaft::from_channel(&times, 1.0, per_turn, &PulseOptions::default()).map(|s| s.0),
+        ];
+        for shaft in shafts.into_iter().flatten() {
+            let options = TsaOptions {
+                period_turns: period,
+                interpolation,
+                ..TsaOptions::per_turn(32)
+            };
+            if let Ok(average) = average(&x, 10.0, &shaft, &options) {
+                prop_assert!(average.samples.iter().chain(&average.spread).all(|v| v.is_finite()));
+            }
+            if let Ok(angle) = to_angle(&x, 10.0, &shaft, 32, interpolation) {
+                prop_assert!(angle.samples.iter().all(|v| v.is_finite()));
+            }
         }
     }
 }

@@ -12,6 +12,9 @@
 //!
 //! The model is zero before t_d; the derivative with respect to t_d jumps there, by
 //! `-A w_d` times one sample, which is harmless with many samples a period.
+//! The scan costs about 16 periods times the ringing's length in samples for each period of the
+//! record: cut long records of lightly damped modes first.
+//!
 //! Verified by `tests/phenomenon.rs`: exact recovery, and the error in noise against Cramer-Rao.
 
 use super::DampedSine;
