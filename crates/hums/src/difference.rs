@@ -1,0 +1,323 @@
+//! Residual, difference and regular signals of a synchronous average.
+//!
+//! Problem. The regular mesh vibration hides the trace of a local fault, so its known orders are
+//! removed: mesh harmonics (the *residual* signal), and some sidebands about each of them (the
+//! *difference* signal). What is removed to make the difference is the *regular* signal.
+//!
+//! Method. Discrete Fourier transform of one period (or several whole ones), the chosen bins set to
+//! zero, and back (Stewart 1977; D 5.4.2). All bins are exact orders.
+//!
+//! Conventions in use, as [`RemovalRule`] constructors:
+//!
+//! | rule | residual removes | difference removes as well |
+//! |---|---|---|
+//! | [`RemovalRule::sidebands`] (D 5.4.2, D 6.4.1) | mesh harmonics | k sideband pairs, k = 0 to 5 |
+//! | [`RemovalRule::shaft_and_mesh`] (Zakrajsek 1993, NASA TM-105950; Lebold 2000) | mesh harmonics, shaft orders 1 and 2, mean | first sideband pair |
+//!
+//! Setting bins to zero spreads the removed part of a local event over the whole period: the
+//! "new steady-state vibrations" of D 5.4.2. The exact difference signal,
+//! [`exact_difference`] (D 4.4, D 5.4.1), has no such trace but needs a healthy twin, so it exists
+//! in simulation, or as difference from a recorded baseline.
+//!
+//! | symbol | field | unit |
+//! |---|---|---|
+//! | z (mesh cycles per record) | `mesh_orders` | cycles per record |
+//! | k | `sideband_pairs` | - |
+//! | spacing | `sideband_spacing` | cycles per record |
+//!
+//! Verified by `tests/difference.rs`: removal is a projection (idempotent, orthogonal, additive),
+//! and equals a brute-force Fourier sum.
+
+use crate::error::{HumsError, Result, require_finite, require_len};
+use crate::spectrum::Spectrum;
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use rustfft::num_complex::Complex;
+use std::sync::Arc;
+
+/// Which orders count as regular. Orders are cycles per record (per averaging period).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RemovalRule {
+    /// Mesh cycles per record of every mesh on the shaft; tooth number for one shaft revolution.
+    pub mesh_orders: Vec<usize>,
+    /// Highest mesh harmonic removed; `usize::MAX` for all up to the Nyquist order.
+    pub harmonics: usize,
+    /// Sideband pairs about every harmonic that the difference signal loses, k in `d^(k)`.
+    pub sideband_pairs: usize,
+    /// Distance between sidebands, cycles per record: 1 for sidebands at shaft order in a record of
+    /// one revolution; the number of planets for planet-pass sidebands in a record of one carrier turn.
+    pub sideband_spacing: usize,
+    /// Shaft orders `1..=shaft_orders` removed from residual and difference.
+    pub shaft_orders: usize,
+    /// Remove order 0 (the mean).
+    pub remove_mean: bool,
+}
+
+impl RemovalRule {
+    /// The dissertation's approximate difference signal `d^(k)`: all mesh harmonics and `k`
+    /// sideband pairs one order apart; mean and shaft orders stay.
+    #[must_use]
+    pub fn sidebands(mesh_order: usize, k: usize) -> Self {
+        Self {
+            mesh_orders: vec![mesh_order],
+            harmonics: usize::MAX,
+            sideband_pairs: k,
+            sideband_spacing: 1,
+            shaft_orders: 0,
+            remove_mean: false,
+        }
+    }
+
+    /// The convention of most HUMS literature: mesh harmonics, shaft orders 1 and 2 and the mean
+    /// leave the residual, first sidebands leave the difference.
+    #[must_use]
+    pub fn shaft_and_mesh(mesh_order: usize) -> Self {
+        Self {
+            shaft_orders: 2,
+            remove_mean: true,
+            ..Self::sidebands(mesh_order, 1)
+        }
+    }
+
+    /// Orders the residual signal loses, sorted, each once, for a record of `samples` samples.
+    #[must_use]
+    pub fn residual_orders(&self, samples: usize) -> Vec<usize> {
+        self.orders(samples, 0)
+    }
+
+    /// Orders the difference signal loses, sorted, each once.
+    #[must_use]
+    pub fn difference_orders(&self, samples: usize) -> Vec<usize> {
+        self.orders(samples, self.sideband_pairs)
+    }
+
+    fn orders(&self, samples: usize, pairs: usize) -> Vec<usize> {
+        let highest = samples / 2;
+        let mut removed: Vec<usize> = (1..=self.shaft_orders.min(highest)).collect();
+        if self.remove_mean {
+            removed.push(0);
+        }
+        let reach = pairs.saturating_mul(self.sideband_spacing);
+        for &mesh in &self.mesh_orders {
+            // A harmonic above Nyquist can still have lower sidebands below it.
+            for h in 1..=self.harmonics {
+                let Some(centre) = mesh.checked_mul(h).filter(|c| *c <= highest + reach) else {
+                    break;
+                };
+                if mesh == 0 {
+                    break;
+                }
+                removed.push(centre);
+                for j in 1..=pairs {
+                    let offset = j * self.sideband_spacing;
+                    removed.push(centre + offset);
+                    removed.extend(centre.checked_sub(offset).filter(|order| *order > 0));
+                }
+            }
+        }
+        removed.retain(|order| *order <= highest);
+        removed.sort_unstable();
+        removed.dedup();
+        removed
+    }
+
+    fn validate(&self, samples: usize) -> Result<()> {
+        if self.mesh_orders.is_empty() || self.mesh_orders.contains(&0) {
+            return Err(HumsError::Parameter {
+                parameter: "mesh orders",
+                value: 0.0,
+                allowed: "at least one, each at least 1 cycle per record",
+            });
+        }
+        if self.sideband_pairs > 0 && self.sideband_spacing == 0 {
+            return Err(HumsError::Parameter {
+                parameter: "sideband spacing",
+                value: 0.0,
+                allowed: "at least 1 cycle per record",
+            });
+        }
+        match self.mesh_orders.iter().find(|z| **z > samples / 2) {
+            Some(&order) => Err(HumsError::OrderNotResolved {
+                order,
+                highest: samples / 2,
+                samples,
+            }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Mesh order of a record from a ratio that may come out of floating-point arithmetic (for example
+/// ring teeth per planet pass, 99 / 3).
+///
+/// # Errors
+/// [`HumsError::Parameter`] unless the value is within 1e-6 of a whole number from 1 upward: a mesh
+/// that does not repeat in the record has no exact bin, and a period that holds whole mesh cycles
+/// (the carrier's, for instance) must be averaged instead.
+pub fn whole_mesh_order(mesh_cycles_per_record: f64) -> Result<usize> {
+    let rounded = mesh_cycles_per_record.round();
+    if (mesh_cycles_per_record - rounded).abs() <= 1e-6 && (1.0..1e9).contains(&rounded) {
+        Ok(rounded as usize)
+    } else {
+        Err(HumsError::Parameter {
+            parameter: "mesh cycles per averaging period",
+            value: mesh_cycles_per_record,
+            allowed: "a whole number, at least 1; average over a period holding whole mesh cycles",
+        })
+    }
+}
+
+/// The signals that gear indicators start from; all of the average's length and unit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SignalSet {
+    /// Average without mesh harmonics (and shaft orders, mean: see the rule).
+    pub residual: Vec<f64>,
+    /// Residual without sidebands.
+    pub difference: Vec<f64>,
+    /// Average minus difference.
+    pub regular: Vec<f64>,
+    /// Spectrum of the average (rectangular window): amplitude at order k is bin k.
+    pub spectrum: Spectrum,
+}
+
+/// Splits averages of one length by one rule; transforms are planned once.
+#[derive(Clone)]
+pub struct Splitter {
+    rule: RemovalRule,
+    residual_orders: Vec<usize>,
+    difference_orders: Vec<usize>,
+    forward: Arc<dyn RealToComplex<f64>>,
+    inverse: Arc<dyn ComplexToReal<f64>>,
+}
+
+impl std::fmt::Debug for Splitter {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Splitter")
+            .field("rule", &self.rule)
+            .field("samples", &self.forward.len())
+            .finish()
+    }
+}
+
+impl Splitter {
+    /// Prepares for averages of `samples` samples.
+    ///
+    /// # Errors
+    /// Mesh orders that are zero, missing, or above the Nyquist order `samples / 2`.
+    pub fn new(samples: usize, rule: &RemovalRule) -> Result<Self> {
+        rule.validate(samples)?;
+        let mut planner = RealFftPlanner::new();
+        Ok(Self {
+            residual_orders: rule.residual_orders(samples),
+            difference_orders: rule.difference_orders(samples),
+            rule: rule.clone(),
+            forward: planner.plan_fft_forward(samples),
+            inverse: planner.plan_fft_inverse(samples),
+        })
+    }
+
+    /// The rule in force.
+    #[must_use]
+    pub fn rule(&self) -> &RemovalRule {
+        &self.rule
+    }
+
+    /// Splits an average.
+    ///
+    /// # Errors
+    /// [`HumsError::LengthMismatch`] for another length than planned; non-finite samples.
+    pub fn split(&self, average: &[f64]) -> Result<SignalSet> {
+        let n = self.forward.len();
+        if average.len() != n {
+            return Err(HumsError::LengthMismatch {
+                what: "average and plan of the splitter",
+                left: average.len(),
+                right: n,
+            });
+        }
+        require_finite("difference signal", average)?;
+        let mut input = average.to_vec();
+        let mut bins = self.forward.make_output_vec();
+        // One buffer of bins and one of scratch serve all transforms.
+        let length = self
+            .forward
+            .get_scratch_len()
+            .max(self.inverse.get_scratch_len());
+        let mut scratch = vec![Complex::new(0.0, 0.0); length];
+        let outcome = self
+            .forward
+            .process_with_scratch(&mut input, &mut bins, &mut scratch);
+        debug_assert!(outcome.is_ok());
+        let mut kept = bins.clone();
+        let residual = self.without(&self.residual_orders, &mut kept, &mut scratch, input);
+        let difference = if self.rule.sideband_pairs == 0 {
+            residual.clone()
+        } else {
+            kept.copy_from_slice(&bins);
+            let out = vec![0.0; n];
+            self.without(&self.difference_orders, &mut kept, &mut scratch, out)
+        };
+        let regular = average
+            .iter()
+            .zip(&difference)
+            .map(|(x, d)| x - d)
+            .collect();
+        Ok(SignalSet {
+            residual,
+            difference,
+            regular,
+            spectrum: Spectrum::from_bins(bins, n),
+        })
+    }
+
+    /// Signal of the bins without some orders; `kept` is used up.
+    fn without(
+        &self,
+        orders: &[usize],
+        kept: &mut [Complex<f64>],
+        scratch: &mut [Complex<f64>],
+        mut out: Vec<f64>,
+    ) -> Vec<f64> {
+        let n = out.len();
+        for &order in orders {
+            kept[order] = Complex::new(0.0, 0.0);
+        }
+        // The transform of a real signal has real bins at DC and Nyquist; the inverse insists.
+        kept[0].im = 0.0;
+        if n % 2 == 0 {
+            kept[n / 2].im = 0.0;
+        }
+        let outcome = self.inverse.process_with_scratch(kept, &mut out, scratch);
+        debug_assert!(outcome.is_ok());
+        let scale = 1.0 / n as f64;
+        out.iter_mut().for_each(|x| *x *= scale);
+        out
+    }
+}
+
+/// Splits one average; see [`Splitter`] for many.
+///
+/// # Errors
+/// As [`Splitter::new`] and [`Splitter::split`].
+pub fn split(average: &[f64], rule: &RemovalRule) -> Result<SignalSet> {
+    require_len("difference signal", average, 2)?;
+    Splitter::new(average.len(), rule)?.split(average)
+}
+
+/// Exact difference signal `d = x_damaged - x_healthy` (D 4.4, D 5.4.1), unit of the signals.
+///
+/// # Errors
+/// [`HumsError::LengthMismatch`]; non-finite samples; empty signals.
+pub fn exact_difference(damaged: &[f64], healthy: &[f64]) -> Result<Vec<f64>> {
+    const WHAT: &str = "exact difference signal";
+    if damaged.len() != healthy.len() {
+        return Err(HumsError::LengthMismatch {
+            what: WHAT,
+            left: damaged.len(),
+            right: healthy.len(),
+        });
+    }
+    require_len(WHAT, damaged, 1)?;
+    require_finite(WHAT, damaged)?;
+    require_finite(WHAT, healthy)?;
+    Ok(damaged.iter().zip(healthy).map(|(d, h)| d - h).collect())
+}

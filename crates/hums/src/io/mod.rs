@@ -1,0 +1,241 @@
+//! Streaming readers for recordings (feature `io`): CSV/TSV, WAV, NPY, MAT v5.
+//!
+//! Problem. Recordings come in many dressings and are larger than memory. Every reader here hands out
+//! blocks of samples, one column a channel, and holds one block:
+//!
+//! | format | streamed | notes |
+//! |---|---|---|
+//! | text ([`text`]) | yes | delimiter, decimal comma, header, units, comments found by themselves |
+//! | WAV ([`wav`]) | yes | 8 to 32 bits whole, 32 bits float; whole numbers scaled to -1..1 |
+//! | NPY ([`npy`]) | yes, if channels are interleaved | 1-D or 2-D; the longer axis is time |
+//! | MAT v5 ([`mat`]) | no: memory is the file's content | vectors and matrices of numbers |
+//!
+//! Missing values come out as NaN, for [`crate::signal::inspect`] to find; anything else that is not
+//! a number is an error naming line and column. Parquet is not read.
+//! Verified by `tests/io.rs` (round trips and damaged files).
+
+pub mod mat;
+pub mod npy;
+mod number;
+pub mod text;
+pub mod wav;
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+/// Why a recording could not be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReadError {
+    /// The operating system refused.
+    #[error("failed to read {path}")]
+    File {
+        /// Which file.
+        path: PathBuf,
+        /// Why.
+        #[source]
+        source: std::io::Error,
+    },
+    /// Reading broke off.
+    #[error("failed to read the recording")]
+    Io(#[from] std::io::Error),
+    /// The file is not what its name says, or is damaged.
+    #[error("not a readable {format} recording: {reason}")]
+    Format {
+        /// Format expected.
+        format: &'static str,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A cell of a text file is not a number.
+    #[error("line {line}, column {column}: `{text}` is not a number")]
+    Cell {
+        /// Line, from 1.
+        line: u64,
+        /// Column, from 1.
+        column: usize,
+        /// What is there (at most 40 characters).
+        text: String,
+    },
+    /// A line of a text file has another number of columns than the first.
+    #[error("line {line} has {found} columns, the recording has {expected}")]
+    Row {
+        /// Line, from 1.
+        line: u64,
+        /// Columns found.
+        found: usize,
+        /// Columns of the first data line.
+        expected: usize,
+    },
+    /// The caller's columns do not match the recording's channels.
+    #[error("{given} columns given for {channels} channels")]
+    Columns {
+        /// Columns given.
+        given: usize,
+        /// Channels of the recording.
+        channels: usize,
+    },
+    /// The extension of the file is not known.
+    #[error(
+        "cannot tell the format of {path} from its name; known: csv, tsv, txt, dat, asc, wav, npy, mat"
+    )]
+    UnknownExtension {
+        /// Which file.
+        path: PathBuf,
+    },
+}
+
+/// Hands out a recording block by block.
+pub trait BlockReader {
+    /// Names of the channels, in order.
+    fn channels(&self) -> &[String];
+
+    /// Sampling rate stated by the file, Hz.
+    fn rate(&self) -> Option<f64>;
+
+    /// Appends at most `samples` samples to each column (one column a channel) and returns their
+    /// number; 0 at the end.
+    ///
+    /// # Errors
+    /// [`ReadError`]; what was appended before it stays and is good.
+    fn read_block(
+        &mut self,
+        samples: usize,
+        columns: &mut [Vec<f64>],
+    ) -> std::result::Result<usize, ReadError>;
+}
+
+/// A whole recording in memory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// Names of the channels.
+    pub names: Vec<String>,
+    /// Sampling rate stated by the file, Hz.
+    pub rate: Option<f64>,
+    /// Samples of each channel, all of one length.
+    pub channels: Vec<Vec<f64>>,
+}
+
+/// Opens a recording by its extension.
+///
+/// # Errors
+/// [`ReadError`].
+pub fn open(
+    path: &Path,
+    options: &text::TextOptions,
+) -> std::result::Result<Box<dyn BlockReader>, ReadError> {
+    let extension = path
+        .extension()
+        .map(|e| e.to_string_lossy().to_ascii_lowercase())
+        .unwrap_or_default();
+    let known = [
+        "csv", "tsv", "txt", "dat", "asc", "wav", "wave", "npy", "mat",
+    ];
+    if !known.contains(&extension.as_str()) {
+        return Err(ReadError::UnknownExtension { path: path.into() });
+    }
+    let file = File::open(path).map_err(|source| ReadError::File {
+        path: path.into(),
+        source,
+    })?;
+    Ok(match extension.as_str() {
+        "wav" | "wave" => Box::new(wav::WavRecording::new(BufReader::new(file))?),
+        "npy" => npy::open(BufReader::new(file))?,
+        "mat" => Box::new(mat::read(BufReader::new(file))?),
+        _ => Box::new(text::TextReader::new(file, options)?),
+    })
+}
+
+/// Reads everything that is left.
+///
+/// # Errors
+/// [`ReadError`].
+pub fn read_all(reader: &mut dyn BlockReader) -> std::result::Result<Recording, ReadError> {
+    let mut channels = vec![Vec::new(); reader.channels().len()];
+    while reader.read_block(1 << 16, &mut channels)? > 0 {}
+    Ok(Recording {
+        names: reader.channels().to_vec(),
+        rate: reader.rate(),
+        channels,
+    })
+}
+
+/// Sampling rate (Hz) of a time column (s): steps over duration.
+///
+/// # Errors
+/// [`crate::HumsError::Parameter`] when a step differs from the mean step by more than half of it (a
+/// hole, a jump back): the record is not uniformly sampled. Fewer than two or non-finite times.
+pub fn rate_of_times(times: &[f64]) -> crate::Result<f64> {
+    crate::error::require_len("time column", times, 2)?;
+    crate::error::require_finite("time column", times)?;
+    let step = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
+    crate::error::require_positive("mean time step", step)?;
+    match times
+        .windows(2)
+        .map(|w| w[1] - w[0])
+        .find(|d| (d - step).abs() > 0.5 * step)
+    {
+        Some(value) => Err(crate::HumsError::Parameter {
+            parameter: "time step",
+            value,
+            allowed: "within half a mean step of the mean step",
+        }),
+        None => Ok(1.0 / step),
+    }
+}
+
+fn check_columns(channels: usize, columns: &[Vec<f64>]) -> std::result::Result<(), ReadError> {
+    if channels == columns.len() {
+        Ok(())
+    } else {
+        Err(ReadError::Columns {
+            given: columns.len(),
+            channels,
+        })
+    }
+}
+
+fn numbered(count: usize) -> Vec<String> {
+    (1..=count).map(|i| format!("channel {i}")).collect()
+}
+
+/// A recording in memory, handed out in blocks.
+#[derive(Debug, Clone)]
+pub struct MemoryReader {
+    recording: Recording,
+    at: usize,
+}
+
+impl MemoryReader {
+    /// Starts at the first sample.
+    #[must_use]
+    pub fn new(recording: Recording) -> Self {
+        Self { recording, at: 0 }
+    }
+}
+
+impl BlockReader for MemoryReader {
+    fn channels(&self) -> &[String] {
+        &self.recording.names
+    }
+
+    fn rate(&self) -> Option<f64> {
+        self.recording.rate
+    }
+
+    fn read_block(
+        &mut self,
+        samples: usize,
+        columns: &mut [Vec<f64>],
+    ) -> std::result::Result<usize, ReadError> {
+        check_columns(self.recording.channels.len(), columns)?;
+        let total = self.recording.channels.iter().map(Vec::len).min();
+        let count = samples.min(total.unwrap_or(0).saturating_sub(self.at));
+        for (column, channel) in columns.iter_mut().zip(&self.recording.channels) {
+            column.extend_from_slice(&channel[self.at..self.at + count]);
+        }
+        self.at += count;
+        Ok(count)
+    }
+}

@@ -1,0 +1,390 @@
+//! Readers: layouts as they come, round trips, damaged files.
+#![cfg(feature = "io")]
+// Lists of ranges with one member are meant as such.
+#![allow(clippy::single_range_in_vec_init)]
+
+mod common;
+use common::gaussian;
+use hums::io::text::{TextOptions, TextReader};
+use hums::io::{BlockReader, ReadError, Recording, mat, npy, open, rate_of_times, read_all, wav};
+use proptest::prelude::*;
+use std::io::Cursor;
+
+fn text(content: &str) -> Result<Recording, ReadError> {
+    text_with(content, &TextOptions::default())
+}
+
+fn text_with(content: &str, options: &TextOptions) -> Result<Recording, ReadError> {
+    let bytes = content.as_bytes().to_vec();
+    read_all(&mut TextReader::new(Cursor::new(bytes), options)?)
+}
+
+#[test]
+fn analytic_layouts_are_found() {
+    let expected = vec![vec![0.0, 0.5, 1.0], vec![1.25, -3e-2, 7.0]];
+    for content in [
+        "0,1.25\n0.5,-3e-2\n1,7\n",
+        "t,acc\n0,1.25\n0.5,-3e-2\n1,7",
+        "\u{feff}t,acc\r\n0,1.25\r\n0.5,-3e-2\r\n1,7\r\n",
+        "# recorded by A. B., on C\n# t, acc\n0,1.25\n\n# pause\n0.5,-3e-2\n1,7\n",
+        "Rate 5120\nt;acc\n[s];[g]\n0;1,25\n0,5;-3e-2\n1;7,0\n",
+        "t\tacc\n0\t1.25\n0.5\t-3e-2\n1\t7\n",
+        "  t    acc\n  0.0   1.25\n  0.5  -3e-2\n  1.0   7.0\n",
+        "\"t\",\"acc\"\n\"0\",\"1.25\"\n\"0.5\",\"-3e-2\"\n\"1\",\"7\"\n",
+        "t, acc,\n0, 1.25,\n0.5, -3e-2,\n1, 7,\n",
+        "2024\nsome text\nt,acc\n0,1.25\n0.5,-3e-2\n1,7",
+    ] {
+        let r = text(content).unwrap();
+        assert_eq!(r.channels, expected, "{content:?}");
+        if content.contains("acc") {
+            assert_eq!(r.names, ["t", "acc"], "{content:?}");
+        } else {
+            assert_eq!(r.names, ["channel 1", "channel 2"]);
+        }
+    }
+    let one = text("acceleration\n1\n2\n3\n").unwrap();
+    assert_eq!(
+        (one.names, one.channels),
+        (vec!["acceleration".into()], vec![vec![1., 2., 3.]])
+    );
+    let comma = TextOptions {
+        decimal_comma: Some(true),
+        ..TextOptions::default()
+    };
+    assert_eq!(
+        text_with("1,5\n2,5\n", &comma).unwrap().channels,
+        [[1.5, 2.5]]
+    );
+    let skip = TextOptions {
+        header_lines: Some(2),
+        ..TextOptions::default()
+    };
+    assert_eq!(
+        text_with("1,2\n3,4\n5,6\n", &skip).unwrap().channels,
+        [[5.0], [6.0]]
+    );
+    let bar = TextOptions {
+        delimiter: Some(b'|'),
+        ..TextOptions::default()
+    };
+    assert_eq!(
+        text_with("a|b\n1|2\n3|4\n", &bar).unwrap().channels,
+        [[1.0, 3.0], [2.0, 4.0]]
+    );
+}
+
+#[test]
+fn extreme_gaps_and_faults_of_text() {
+    let r = text("t,a\n0,1\n1,\n2,NaN\n3,n/a\n4,5\n").unwrap();
+    assert_eq!(r.channels[0], [0.0, 1.0, 2.0, 3.0, 4.0]);
+    assert!(r.channels[1][1..4].iter().all(|x| x.is_nan()));
+    let quality = hums::signal::inspect(&r.channels[1], 3);
+    assert_eq!((quality.gaps, quality.missing), (vec![1..4], 3));
+    match text("t,a\n0,1\n1,2\n2,hello\n") {
+        Err(ReadError::Cell {
+            line: 4,
+            column: 2,
+            text,
+        }) => assert_eq!(text, "hello"),
+        other => panic!("{other:?}"),
+    }
+    // A bad cell in the second line is reported, not taken for a header.
+    assert!(matches!(
+        text("0,1\n1,x\n2,3\n3,4\n"),
+        Err(ReadError::Cell {
+            line: 2,
+            column: 2,
+            ..
+        })
+    ));
+    assert!(matches!(
+        text("0,1\n1,2\n2\n"),
+        Err(ReadError::Row {
+            line: 3,
+            found: 1,
+            expected: 2
+        })
+    ));
+    for bad in [
+        "",
+        "\n\n",
+        "only words\nand more\n",
+        "\u{0}\u{1}\u{2}",
+        "# comment",
+    ] {
+        assert!(
+            matches!(text(bad), Err(ReadError::Format { .. })),
+            "{bad:?}"
+        );
+    }
+    assert!(
+        TextReader::new(
+            Cursor::new(b"\xff\xfe1\x00".to_vec()),
+            &TextOptions::default()
+        )
+        .is_err()
+    );
+    let mut reader =
+        TextReader::new(Cursor::new(b"1,2\n3,4\n".to_vec()), &TextOptions::default()).unwrap();
+    assert!(matches!(
+        reader.read_block(5, &mut [Vec::new()]),
+        Err(ReadError::Columns {
+            given: 1,
+            channels: 2
+        })
+    ));
+}
+
+#[test]
+fn invariant_text_in_blocks_across_buffers() {
+    // Longer than the buffer of 1 MiB, read in odd blocks.
+    let x = gaussian(120_000, 6);
+    let mut content = String::from("a,b\n");
+    for (i, v) in x.iter().enumerate() {
+        content.push_str(&format!("{i},{v}\n"));
+    }
+    assert!(content.len() > 2 << 20);
+    let mut reader =
+        TextReader::new(Cursor::new(content.into_bytes()), &TextOptions::default()).unwrap();
+    let mut columns = vec![Vec::new(), Vec::new()];
+    while reader.read_block(777, &mut columns).unwrap() > 0 {}
+    assert_eq!(columns[1], x);
+    assert_eq!(columns[0][119_999], 119_999.0);
+}
+
+proptest! {
+    #[test]
+    fn invariant_numbers_are_correctly_rounded(x in any::<f64>(), digits in 0_usize..20) {
+        prop_assume!(x.is_finite());
+        for form in [format!("{x}"), format!("{x:e}"), format!("{x:.digits$e}"), format!("{:.digits$}", x % 1e9)] {
+            let found = text(&format!("{form}\n{form}\n")).unwrap().channels[0][0];
+            prop_assert_eq!(found.to_bits(), form.parse::<f64>().unwrap().to_bits(), "{}", form);
+        }
+    }
+
+    #[test]
+    fn extreme_any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        if let Ok(mut r) = TextReader::new(Cursor::new(bytes.clone()), &TextOptions::default()) {
+            let _ = read_all(&mut r);
+        }
+        if let Ok(mut r) = wav::WavRecording::new(Cursor::new(bytes.clone())) {
+            let _ = read_all(&mut r);
+        }
+        if let Ok(mut r) = npy::open(Cursor::new(bytes.clone())) {
+            let _ = read_all(r.as_mut());
+        }
+        let _ = mat::read(Cursor::new(bytes));
+    }
+}
+
+fn wav_bytes(bits: u16, float: bool, frames: &[[f64; 2]]) -> Vec<u8> {
+    let spec = hound::WavSpec {
+        channels: 2,
+        sample_rate: 51_200,
+        bits_per_sample: bits,
+        sample_format: if float {
+            hound::SampleFormat::Float
+        } else {
+            hound::SampleFormat::Int
+        },
+    };
+    let mut bytes = Cursor::new(Vec::new());
+    let mut writer = hound::WavWriter::new(&mut bytes, spec).unwrap();
+    for x in frames.iter().flatten() {
+        if float {
+            writer.write_sample(*x as f32).unwrap();
+        } else {
+            writer
+                .write_sample((x * f64::from(bits - 1).exp2()) as i32)
+                .unwrap();
+        }
+    }
+    writer.finalize().unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn analytic_wav_of_all_widths() {
+    // Exact in 8 bits, hence in all; full scale negative, and 24 bits clipped at both ends.
+    let frames = [
+        [0.0, -1.0],
+        [0.5, 0.25],
+        [-0.125, 0.75],
+        [63.0 / 64.0, -63.0 / 64.0],
+    ];
+    for (bits, float) in [
+        (8, false),
+        (16, false),
+        (24, false),
+        (32, false),
+        (32, true),
+    ] {
+        let bytes = wav_bytes(bits, float, &frames);
+        let mut reader = wav::WavRecording::new(Cursor::new(bytes.clone())).unwrap();
+        let mut columns = vec![Vec::new(), Vec::new()];
+        assert_eq!(reader.read_block(3, &mut columns).unwrap(), 3);
+        assert_eq!(reader.read_block(3, &mut columns).unwrap(), 1);
+        assert_eq!(reader.read_block(3, &mut columns).unwrap(), 0);
+        assert_eq!(reader.rate(), Some(51_200.0));
+        for (i, frame) in frames.iter().enumerate() {
+            assert_eq!([columns[0][i], columns[1][i]], *frame, "{bits} {float}");
+        }
+        // Cut off in the middle: what is there, or an error; no panic.
+        for cut in 0..bytes.len() {
+            if let Ok(mut r) = wav::WavRecording::new(Cursor::new(bytes[..cut].to_vec())) {
+                let _ = read_all(&mut r);
+            }
+        }
+    }
+}
+
+fn npy_bytes(descr: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec<u8> {
+    let order = if fortran { "True" } else { "False" };
+    let mut header =
+        format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': ({shape}), }}");
+    while (10 + header.len() + 1) % 64 != 0 {
+        header.push(' ');
+    }
+    header.push('\n');
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    bytes.extend(data);
+    bytes
+}
+
+#[test]
+fn analytic_npy_types_and_orders() {
+    let read = |bytes: Vec<u8>| -> Result<Recording, ReadError> {
+        read_all(npy::open(Cursor::new(bytes))?.as_mut())
+    };
+    let f8: Vec<u8> = [1.0_f64, -2.5, 3.0, 4.0, 5.0, 6.0]
+        .iter()
+        .flat_map(|x| x.to_le_bytes())
+        .collect();
+    assert_eq!(
+        read(npy_bytes("<f8", false, "6,", &f8)).unwrap().channels,
+        [[1.0, -2.5, 3.0, 4.0, 5.0, 6.0]]
+    );
+    let pairs = [vec![1.0, 3.0, 5.0], vec![-2.5, 4.0, 6.0]];
+    let halves = [vec![1.0, -2.5, 3.0], vec![4.0, 5.0, 6.0]];
+    assert_eq!(
+        read(npy_bytes("<f8", false, "3, 2", &f8)).unwrap().channels,
+        pairs
+    );
+    assert_eq!(
+        read(npy_bytes("<f8", true, "3, 2", &f8)).unwrap().channels,
+        halves
+    );
+    assert_eq!(
+        read(npy_bytes("<f8", false, "2, 3", &f8)).unwrap().channels,
+        halves
+    );
+    assert_eq!(
+        read(npy_bytes("<f8", true, "2, 3", &f8)).unwrap().channels,
+        pairs
+    );
+    let i2: Vec<u8> = [-2_i16, 300].iter().flat_map(|x| x.to_be_bytes()).collect();
+    assert_eq!(
+        read(npy_bytes(">i2", false, "2,", &i2)).unwrap().channels,
+        [[-2.0, 300.0]]
+    );
+    let f4: Vec<u8> = [0.1_f32, -7.0]
+        .iter()
+        .flat_map(|x| x.to_le_bytes())
+        .collect();
+    assert_eq!(
+        read(npy_bytes("<f4", false, "2,", &f4)).unwrap().channels,
+        [[f64::from(0.1_f32), -7.0]]
+    );
+    assert_eq!(
+        read(npy_bytes("|u1", false, "3,", &[1, 2, 255]))
+            .unwrap()
+            .channels,
+        [[1.0, 2.0, 255.0]]
+    );
+    for bad in [
+        npy_bytes("<f8", false, "7,", &f8),
+        npy_bytes("<f8", false, "2, 4", &f8),
+        npy_bytes("<c16", false, "3,", &f8),
+        npy_bytes("<f8", false, "1, 2, 3", &f8),
+        npy_bytes("<f8", false, "9223372036854775807, 8", &f8),
+    ] {
+        assert!(matches!(read(bad), Err(ReadError::Format { .. })));
+    }
+}
+
+/// One MAT v5 matrix element of doubles.
+fn mat_array(name: &str, rows: i32, columns: i32, values: &[f64]) -> Vec<u8> {
+    let mut body = Vec::new();
+    let mut element = |kind: u32, data: &[u8]| {
+        body.extend(kind.to_le_bytes());
+        body.extend((data.len() as u32).to_le_bytes());
+        body.extend(data);
+        body.resize(body.len().next_multiple_of(8), 0);
+    };
+    element(6, &[6, 0, 0, 0, 0, 0, 0, 0]);
+    element(5, &[rows.to_le_bytes(), columns.to_le_bytes()].concat());
+    element(1, name.as_bytes());
+    element(
+        9,
+        &values
+            .iter()
+            .flat_map(|x| x.to_le_bytes())
+            .collect::<Vec<_>>(),
+    );
+    let mut array = [14_u32.to_le_bytes(), (body.len() as u32).to_le_bytes()].concat();
+    array.extend(body);
+    array
+}
+
+fn mat_file(arrays: &[Vec<u8>]) -> Vec<u8> {
+    let mut bytes = b"MATLAB 5.0 MAT-file".to_vec();
+    bytes.resize(124, b' ');
+    bytes.extend([0x00, 0x01, b'I', b'M']);
+    arrays.iter().for_each(|a| bytes.extend(a));
+    bytes
+}
+
+#[test]
+fn analytic_mat_vectors_and_matrices() {
+    let bytes = mat_file(&[
+        mat_array("fs", 1, 1, &[5120.0]),
+        mat_array("acc", 4, 1, &[1.0, 2.0, 3.0, 4.0]),
+        mat_array("sensors", 2, 4, &[1.0, 5.0, 2.0, 6.0, 3.0, 7.0, 4.0, 8.0]),
+        mat_array("other", 1, 2, &[9.0, 9.0]),
+    ]);
+    let r = read_all(&mut mat::read(Cursor::new(bytes.clone())).unwrap()).unwrap();
+    assert_eq!(r.rate, Some(5120.0));
+    assert_eq!(r.names, ["acc", "sensors(1)", "sensors(2)"]);
+    let up = vec![1.0, 2.0, 3.0, 4.0];
+    assert_eq!(r.channels, [up.clone(), up, vec![5.0, 6.0, 7.0, 8.0]]);
+    for cut in 0..bytes.len() {
+        let _ = mat::read(Cursor::new(bytes[..cut].to_vec()));
+    }
+    for at in 128..bytes.len() {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 0xff;
+        let _ = mat::read(Cursor::new(damaged));
+    }
+    assert!(matches!(
+        mat::read(Cursor::new(mat_file(&[mat_array("fs", 1, 1, &[1.0])]))),
+        Err(ReadError::Format { .. })
+    ));
+}
+
+#[test]
+fn analytic_files_by_extension() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("rec.CSV");
+    std::fs::write(&path, "t,a\n0,1\n0.25,2\n0.5,3\n").unwrap();
+    let mut reader = open(&path, &TextOptions::default()).unwrap();
+    let r = read_all(reader.as_mut()).unwrap();
+    assert_eq!(rate_of_times(&r.channels[0]).unwrap(), 4.0);
+    assert!(rate_of_times(&[0.0, 1.0, 2.0, 9.0]).is_err());
+    assert!(rate_of_times(&[0.0, 1.0, 0.5, 3.0]).is_err());
+    let missing = open(&folder.path().join("no.csv"), &TextOptions::default());
+    assert!(matches!(missing, Err(ReadError::File { .. })));
+    let unknown = open(&folder.path().join("x.parquet"), &TextOptions::default());
+    assert!(matches!(unknown, Err(ReadError::UnknownExtension { .. })));
+}
