@@ -10,7 +10,7 @@ use gear_geom::{Gear, GearPair};
 use gearwright::case::{self, SpurPairCase};
 
 fn load(name: &str) -> SpurPairCase {
-    case::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs").join(name)).unwrap()
+    case::load_spur_pair(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs").join(name)).unwrap()
 }
 
 fn solve(case: &SpurPairCase, count: u32, torques: Vec<f64>) -> Vec<Vec<PositionResult>> {

@@ -167,7 +167,7 @@ fn bad_input_is_one_message_with_file_line_key_value_and_remedy() {
         ("positions_per_cycle = 10", "positions_per_cycle = 0", &["case.toml:29", "analysis.positions_per_cycle", "0"]),
         (
             "facewidth_mm = 16.0\n\n[gear]",
-            "facewidth_mm = 16.0\nmodification.measured = \"nowhere.csv\"\n\n[gear]",
+            "facewidth_mm = 16.0\nmodification.deviation_table = \"nowhere.csv\"\n\n[gear]",
             &["case.toml:16", "nowhere.csv"],
         ),
     ];
@@ -208,19 +208,23 @@ fn all_faults_are_told_at_once() {
 }
 
 #[test]
-fn init_writes_a_case_that_checks_and_explains_itself() {
-    let scratch = Scratch::new();
-    assert!(gearwright(scratch.path(), &["init", "spur-pair"]).status.success());
-    let check = gearwright(scratch.path(), &["check", "spur-pair.toml"]);
-    assert!(check.status.success(), "{}", text(&check.stderr));
-    let written = std::fs::read_to_string(scratch.path().join("spur-pair.toml")).unwrap();
-    // every key that can be set is there, set or as a comment, with its meaning
-    for key in text(&gearwright(scratch.path(), &["explain"]).stdout).lines() {
-        let last = key.rsplit('.').next().unwrap();
-        assert!(written.contains(last), "{key} is missing in the template");
+fn init_writes_cases_that_check_and_explain_themselves() {
+    for kind in gearwright::case::kind::KINDS {
+        let scratch = Scratch::new();
+        assert!(gearwright(scratch.path(), &["init", kind.name]).status.success());
+        let name = format!("{}.toml", kind.name);
+        let check = gearwright(scratch.path(), &["check", &name]);
+        assert!(check.status.success(), "{}", text(&check.stderr));
+        let written = std::fs::read_to_string(scratch.path().join(&name)).unwrap();
+        // every key that can be set is there, set or as a comment, with its meaning
+        for key in gearwright::case::reference::keys(kind) {
+            let last = key.key.rsplit('.').next().unwrap();
+            assert!(written.contains(last), "{} is missing in the template", key.key);
+            assert!(!key.text.is_empty(), "{} is not documented", key.key);
+        }
+        let again = gearwright(scratch.path(), &["init", kind.name]);
+        assert!(!again.status.success(), "an existing file is not overwritten");
     }
-    let again = gearwright(scratch.path(), &["init", "spur-pair"]);
-    assert!(!again.status.success(), "an existing file is not overwritten");
 }
 
 #[test]
@@ -235,8 +239,25 @@ fn explain_tells_meaning_range_and_default() {
 }
 
 #[test]
-fn checked_in_schema_is_current() {
-    let current = text(&gearwright(Path::new("."), &["schema"]).stdout);
-    let kept = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("schema/case.schema.json")).unwrap();
-    assert!(current == kept, "run: cargo run --release -- schema > crates/gearwright/schema/case.schema.json");
+fn checked_in_schemas_are_current() {
+    for kind in gearwright::case::kind::KINDS {
+        let name = kind.name;
+        let current = text(&gearwright(Path::new("."), &["schema", name]).stdout);
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("schema/{name}.schema.json"));
+        let kept = std::fs::read_to_string(file).unwrap();
+        assert!(current == kept, "run: gearwright schema {name} > crates/gearwright/schema/{name}.schema.json");
+    }
+}
+
+#[test]
+fn every_case_of_the_repository_is_valid() {
+    let configs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs");
+    let mut count = 0;
+    for entry in std::fs::read_dir(&configs).unwrap() {
+        let file = entry.unwrap().path();
+        let output = gearwright(&configs, &["check", &file.to_string_lossy()]);
+        assert!(output.status.success(), "{}", text(&output.stderr));
+        count += 1;
+    }
+    assert!(count >= 4);
 }

@@ -16,9 +16,7 @@ fn signal(n: usize) -> Vec<f64> {
     let mut state = 1_u64;
     (0..n)
         .map(|i| {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (i as f64 * 0.083).sin() + (state >> 11) as f64 / (1_u64 << 53) as f64
         })
         .collect()
@@ -26,9 +24,7 @@ fn signal(n: usize) -> Vec<f64> {
 
 fn indicators(c: &mut Criterion) {
     let mut group = c.benchmark_group("indicators");
-    group
-        .sample_size(20)
-        .measurement_time(Duration::from_secs(2));
+    group.sample_size(20).measurement_time(Duration::from_secs(2));
     let n = 1 << 20;
     let x = signal(n);
     group.throughput(Throughput::Elements(n as u64));
@@ -50,9 +46,7 @@ fn indicators(c: &mut Criterion) {
 
 fn averaging(c: &mut Criterion) {
     let mut group = c.benchmark_group("synchronous average");
-    group
-        .sample_size(10)
-        .measurement_time(Duration::from_secs(2));
+    group.sample_size(10).measurement_time(Duration::from_secs(2));
     let n = 1 << 20;
     let x = signal(n);
     group.throughput(Throughput::Elements(n as u64));
@@ -61,10 +55,7 @@ fn averaging(c: &mut Criterion) {
         ("cubic spline", Interpolation::CubicSpline),
         ("band-limited", Interpolation::default()),
     ] {
-        let options = TsaOptions {
-            interpolation,
-            ..TsaOptions::per_turn(2048)
-        };
+        let options = TsaOptions { interpolation, ..TsaOptions::per_turn(2048) };
         let Ok(shaft) = Shaft::constant(10.0, n, 20_000.0) else {
             continue;
         };
@@ -80,24 +71,15 @@ fn reading(c: &mut Criterion) {
     use hums::io::text::{TextOptions, TextReader};
     use hums::io::{BlockReader, wav::WavRecording};
     let mut group = c.benchmark_group("reading");
-    group
-        .sample_size(10)
-        .measurement_time(Duration::from_secs(2));
+    group.sample_size(10).measurement_time(Duration::from_secs(2));
     let x = signal(800_000);
-    let short: String = x
-        .chunks(4)
-        .map(|r| format!("{:.6},{:.6},{:.6},{:.6}\n", r[0], r[1], r[2], r[3]))
-        .collect();
-    let long: String = x
-        .chunks(4)
-        .map(|r| format!("{},{},{},{}\n", r[0], r[1], r[2], r[3]))
-        .collect();
+    let short: String = x.chunks(4).map(|r| format!("{:.6},{:.6},{:.6},{:.6}\n", r[0], r[1], r[2], r[3])).collect();
+    let long: String = x.chunks(4).map(|r| format!("{},{},{},{}\n", r[0], r[1], r[2], r[3])).collect();
     for (name, text) in [("csv, 7 digits", &short), ("csv, 17 digits", &long)] {
         group.throughput(Throughput::Bytes(text.len() as u64));
         group.bench_function(name, |b| {
             b.iter(|| {
-                let Ok(mut reader) = TextReader::new(text.as_bytes(), &TextOptions::default())
-                else {
+                let Ok(mut reader) = TextReader::new(text.as_bytes(), &TextOptions::default()) else {
                     return 0;
                 };
                 let mut columns = vec![Vec::new(); 4];

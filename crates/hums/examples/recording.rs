@@ -22,19 +22,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let mut reader = open(Path::new(file), &TextOptions::default())?;
     let (rate, speed, teeth): (f64, f64, usize) = (rate.parse()?, speed.parse()?, teeth.parse()?);
-    let rate = if rate > 0.0 {
-        rate
-    } else {
-        reader.rate().ok_or("the file states no rate")?
-    };
+    let rate = if rate > 0.0 { rate } else { reader.rate().ok_or("the file states no rate")? };
 
     let shaft = Shaft::constant(speed, LONGEST, rate)?;
     let options = TsaOptions::per_turn(hums::resample::samples_per_period(rate, &shaft, 1.0)?);
     let names = reader.channels().to_vec();
-    let mut averagers = names
-        .iter()
-        .map(|_| Averager::new(rate, shaft.clone(), options.clone()))
-        .collect::<hums::Result<Vec<_>>>()?;
+    let mut averagers =
+        names.iter().map(|_| Averager::new(rate, shaft.clone(), options.clone())).collect::<hums::Result<Vec<_>>>()?;
     let mut columns = vec![Vec::new(); names.len()];
     while reader.read_block(BLOCK, &mut columns)? > 0 {
         for (averager, column) in averagers.iter_mut().zip(&mut columns) {
@@ -59,11 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 Ok(value) => format!("{value:.6}"),
                 Err(reason) => format!("- ({reason})"),
             };
-            println!(
-                "  {:<28} {:<14} {value}",
-                entry.indicator.name(),
-                entry.signal.name()
-            );
+            println!("  {:<28} {:<14} {value}", entry.indicator.name(), entry.signal.name());
         }
     }
     Ok(())

@@ -6,9 +6,7 @@ use std::time::Instant;
 
 fn main() -> hums::Result<()> {
     let n = 200_000;
-    let at: Vec<f64> = (0..n - 2000)
-        .map(|i| 1000.0 + f64::from(i) * 0.997)
-        .collect();
+    let at: Vec<f64> = (0..n - 2000).map(|i| 1000.0 + f64::from(i) * 0.997).collect();
     let band = |half_width, beta| Interpolation::BandLimited { half_width, beta };
     println!(
         "{:<44} {:>9} {:>9} {:>9} {:>9} {:>11}",
@@ -31,11 +29,7 @@ fn main() -> hums::Result<()> {
             let start = Instant::now();
             let y = resample(&x, &at, method)?;
             best = best.min(start.elapsed().as_secs_f64() / at.len() as f64);
-            let error = y
-                .iter()
-                .zip(&at)
-                .map(|(y, p)| (y - (w * p).sin()).abs())
-                .fold(0.0, f64::max);
+            let error = y.iter().zip(&at).map(|(y, p)| (y - (w * p).sin()).abs()).fold(0.0, f64::max);
             line += &format!(" {error:>9.1e}");
         }
         println!("{line} {:>11.1}", best * 1e9);

@@ -71,11 +71,7 @@ impl RemovalRule {
     /// leave the residual, first sidebands leave the difference.
     #[must_use]
     pub fn shaft_and_mesh(mesh_order: usize) -> Self {
-        Self {
-            shaft_orders: 2,
-            remove_mean: true,
-            ..Self::sidebands(mesh_order, 1)
-        }
+        Self { shaft_orders: 2, remove_mean: true, ..Self::sidebands(mesh_order, 1) }
     }
 
     /// Orders the residual signal loses, sorted, each once, for a record of `samples` samples.
@@ -136,11 +132,7 @@ impl RemovalRule {
             });
         }
         match self.mesh_orders.iter().find(|z| **z > samples / 2) {
-            Some(&order) => Err(HumsError::OrderNotResolved {
-                order,
-                highest: samples / 2,
-                samples,
-            }),
+            Some(&order) => Err(HumsError::OrderNotResolved { order, highest: samples / 2, samples }),
             None => Ok(()),
         }
     }
@@ -191,10 +183,7 @@ pub struct Splitter {
 
 impl std::fmt::Debug for Splitter {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Splitter")
-            .field("rule", &self.rule)
-            .field("samples", &self.forward.len())
-            .finish()
+        f.debug_struct("Splitter").field("rule", &self.rule).field("samples", &self.forward.len()).finish()
     }
 }
 
@@ -238,14 +227,9 @@ impl Splitter {
         let mut input = average.to_vec();
         let mut bins = self.forward.make_output_vec();
         // One buffer of bins and one of scratch serve all transforms.
-        let length = self
-            .forward
-            .get_scratch_len()
-            .max(self.inverse.get_scratch_len());
+        let length = self.forward.get_scratch_len().max(self.inverse.get_scratch_len());
         let mut scratch = vec![Complex::new(0.0, 0.0); length];
-        let outcome = self
-            .forward
-            .process_with_scratch(&mut input, &mut bins, &mut scratch);
+        let outcome = self.forward.process_with_scratch(&mut input, &mut bins, &mut scratch);
         debug_assert!(outcome.is_ok());
         let mut kept = bins.clone();
         let residual = self.without(&self.residual_orders, &mut kept, &mut scratch, input);
@@ -256,17 +240,8 @@ impl Splitter {
             let out = vec![0.0; n];
             self.without(&self.difference_orders, &mut kept, &mut scratch, out)
         };
-        let regular = average
-            .iter()
-            .zip(&difference)
-            .map(|(x, d)| x - d)
-            .collect();
-        Ok(SignalSet {
-            residual,
-            difference,
-            regular,
-            spectrum: Spectrum::from_bins(bins, n),
-        })
+        let regular = average.iter().zip(&difference).map(|(x, d)| x - d).collect();
+        Ok(SignalSet { residual, difference, regular, spectrum: Spectrum::from_bins(bins, n) })
     }
 
     /// Signal of the bins without some orders; `kept` is used up.
@@ -310,11 +285,7 @@ pub fn split(average: &[f64], rule: &RemovalRule) -> Result<SignalSet> {
 pub fn exact_difference(damaged: &[f64], healthy: &[f64]) -> Result<Vec<f64>> {
     const WHAT: &str = "exact difference signal";
     if damaged.len() != healthy.len() {
-        return Err(HumsError::LengthMismatch {
-            what: WHAT,
-            left: damaged.len(),
-            right: healthy.len(),
-        });
+        return Err(HumsError::LengthMismatch { what: WHAT, left: damaged.len(), right: healthy.len() });
     }
     require_len(WHAT, damaged, 1)?;
     require_finite(WHAT, damaged)?;

@@ -25,12 +25,7 @@ pub fn analytic_signal(signal: &[f64]) -> Result<Vec<Complex<f64>>> {
     require_finite("analytic signal", signal)?;
     let bins = forward(&mut signal.to_vec());
     let highest = bins.len() - 1;
-    Ok(one_sided_inverse(
-        &bins,
-        signal.len(),
-        0..=highest,
-        inverse_plan(signal.len()).as_ref(),
-    ))
+    Ok(one_sided_inverse(&bins, signal.len(), 0..=highest, inverse_plan(signal.len()).as_ref()))
 }
 
 /// Envelope `|x + i H[x]|` of the whole band, unit of the signal.
@@ -71,12 +66,7 @@ pub struct Demodulated {
 pub fn demodulate(average: &[f64], carrier: usize, half_width: usize) -> Result<Demodulated> {
     require_len("demodulation", average, 2)?;
     require_finite("demodulation", average)?;
-    demodulate_bins(
-        &forward(&mut average.to_vec()),
-        average.len(),
-        carrier,
-        half_width,
-    )
+    demodulate_bins(&forward(&mut average.to_vec()), average.len(), carrier, half_width)
 }
 
 pub(crate) fn demodulate_bins(
@@ -85,13 +75,7 @@ pub(crate) fn demodulate_bins(
     carrier: usize,
     half_width: usize,
 ) -> Result<Demodulated> {
-    let z = band_analytic(
-        bins,
-        samples,
-        carrier,
-        half_width,
-        inverse_plan(samples).as_ref(),
-    )?;
+    let z = band_analytic(bins, samples, carrier, half_width, inverse_plan(samples).as_ref())?;
     let mut phase = Vec::with_capacity(samples);
     let mut last = 0.0;
     for (n, value) in z.iter().enumerate() {
@@ -99,19 +83,11 @@ pub(crate) fn demodulate_bins(
         let turn = (carrier as u128 * n as u128 % samples as u128) as f64 / samples as f64;
         let raw = value.arg() - TAU * turn;
         let wrapped = raw - TAU * ((raw - last) / TAU).round();
-        let unwrapped = if n == 0 {
-            raw - TAU * ((raw - PI) / TAU).ceil()
-        } else {
-            wrapped
-        };
+        let unwrapped = if n == 0 { raw - TAU * ((raw - PI) / TAU).ceil() } else { wrapped };
         phase.push(unwrapped);
         last = unwrapped;
     }
-    Ok(Demodulated {
-        band: z.iter().map(|v| v.re).collect(),
-        amplitude: moduli(&z),
-        phase,
-    })
+    Ok(Demodulated { band: z.iter().map(|v| v.re).collect(), amplitude: moduli(&z), phase })
 }
 
 pub(crate) fn band_analytic(
@@ -130,18 +106,9 @@ pub(crate) fn band_analytic(
     }
     let upper = carrier + half_width;
     if 2 * upper >= samples {
-        return Err(HumsError::OrderNotResolved {
-            order: upper,
-            highest: samples.saturating_sub(1) / 2,
-            samples,
-        });
+        return Err(HumsError::OrderNotResolved { order: upper, highest: samples.saturating_sub(1) / 2, samples });
     }
-    Ok(one_sided_inverse(
-        bins,
-        samples,
-        carrier - half_width..=upper,
-        plan,
-    ))
+    Ok(one_sided_inverse(bins, samples, carrier - half_width..=upper, plan))
 }
 
 /// Analytic signal of a range of one-sided bins: DC and Nyquist once, the others doubled.
@@ -167,9 +134,7 @@ pub(crate) fn inverse_plan(samples: usize) -> Arc<dyn Fft<f64>> {
 
 /// Moduli `|z|`; without the care of `hypot` where squares can neither overflow nor vanish.
 pub(crate) fn moduli(z: &[Complex<f64>]) -> Vec<f64> {
-    let largest = z
-        .iter()
-        .fold(0.0_f64, |m, v| m.max(v.re.abs()).max(v.im.abs()));
+    let largest = z.iter().fold(0.0_f64, |m, v| m.max(v.re.abs()).max(v.im.abs()));
     if (1e-140..1e140).contains(&largest) {
         z.iter().map(|v| v.norm_sqr().sqrt()).collect()
     } else {

@@ -63,9 +63,7 @@ pub enum HumsError {
         right: usize,
     },
     /// A gear-mesh order needed by the quantity is not on the record's spectral grid.
-    #[error(
-        "order {order} is above the highest order {highest} that {samples} samples per period resolve"
-    )]
+    #[error("order {order} is above the highest order {highest} that {samples} samples per period resolve")]
     OrderNotResolved {
         /// Order asked for, cycles per record.
         order: usize,
@@ -97,11 +95,7 @@ pub type Result<T> = std::result::Result<T, HumsError>;
 
 pub(crate) fn require_len(what: &'static str, signal: &[f64], needed: usize) -> Result<()> {
     if signal.len() < needed {
-        return Err(HumsError::TooShort {
-            what,
-            needed,
-            found: signal.len(),
-        });
+        return Err(HumsError::TooShort { what, needed, found: signal.len() });
     }
     Ok(())
 }
@@ -113,31 +107,19 @@ pub(crate) fn require_finite(what: &'static str, signal: &[f64]) -> Result<()> {
         return Ok(());
     }
     match signal.iter().position(|x| !x.is_finite()) {
-        Some(index) => Err(HumsError::NotFinite {
-            what,
-            index,
-            value: signal[index],
-        }),
+        Some(index) => Err(HumsError::NotFinite { what, index, value: signal[index] }),
         None => Ok(()),
     }
 }
 
 pub(crate) fn finite_or_out_of_range(what: &'static str, value: f64) -> Result<f64> {
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(HumsError::OutOfRange { what })
-    }
+    if value.is_finite() { Ok(value) } else { Err(HumsError::OutOfRange { what }) }
 }
 
 pub(crate) fn require_positive(parameter: &'static str, value: f64) -> Result<()> {
     if value > 0.0 && value.is_finite() {
         Ok(())
     } else {
-        Err(HumsError::Parameter {
-            parameter,
-            value,
-            allowed: "finite and > 0",
-        })
+        Err(HumsError::Parameter { parameter, value, allowed: "finite and > 0" })
     }
 }

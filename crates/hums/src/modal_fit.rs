@@ -81,10 +81,7 @@ pub fn fit_modes(signal: &[f64], rate: f64, modes: usize, method: Method) -> Res
     require_finite(WHAT, signal)?;
     let peak = crate::moments::peak(signal);
     if !(peak > 0.0) {
-        return Err(HumsError::Undefined {
-            what: WHAT,
-            reason: "the signal is zero everywhere",
-        });
+        return Err(HumsError::Undefined { what: WHAT, reason: "the signal is zero everywhere" });
     }
     let y: Vec<f64> = signal.iter().map(|x| x / peak).collect();
     let (roots, singular_values) = match method {
@@ -99,29 +96,18 @@ pub fn fit_modes(signal: &[f64], rate: f64, modes: usize, method: Method) -> Res
         .collect();
     poles.sort_by(|a, b| a.im.total_cmp(&b.im));
     if poles.is_empty() {
-        return Err(HumsError::Undefined {
-            what: WHAT,
-            reason: "no root of the recurrence is a decaying oscillation",
-        });
+        return Err(HumsError::Undefined { what: WHAT, reason: "no root of the recurrence is a decaying oscillation" });
     }
     let (mut found, rest) = amplitudes(&y, rate, &poles)?;
     found.iter_mut().for_each(|m| m.amplitude *= peak);
     found.sort_by(|a, b| b.amplitude.total_cmp(&a.amplitude));
-    Ok(ModalFit {
-        discarded: roots.len() - 2 * found.len(),
-        modes: found,
-        residual_rms: rest * peak,
-        singular_values,
-    })
+    Ok(ModalFit { discarded: roots.len() - 2 * found.len(), modes: found, residual_rms: rest * peak, singular_values })
 }
 
 fn eigenvalues(what: &'static str, matrix: DMatrix<f64>) -> Result<Vec<Complex<f64>>> {
     const LIMIT: usize = 10_000;
-    let schur =
-        nalgebra::Schur::try_new(matrix, f64::EPSILON, LIMIT).ok_or(HumsError::NoConvergence {
-            what,
-            iterations: LIMIT,
-        })?;
+    let schur = nalgebra::Schur::try_new(matrix, f64::EPSILON, LIMIT)
+        .ok_or(HumsError::NoConvergence { what, iterations: LIMIT })?;
     let values = schur.complex_eigenvalues();
     Ok(values.iter().map(|z| Complex::new(z.re, z.im)).collect())
 }
@@ -129,13 +115,8 @@ fn eigenvalues(what: &'static str, matrix: DMatrix<f64>) -> Result<Vec<Complex<f
 /// Moore-Penrose solution by singular value decomposition.
 fn least_squares(what: &'static str, a: DMatrix<f64>, b: &DMatrix<f64>) -> Result<DMatrix<f64>> {
     let limit = 10_000;
-    let failed = HumsError::NoConvergence {
-        what,
-        iterations: limit,
-    };
-    let svd = a
-        .try_svd(true, true, f64::EPSILON, limit)
-        .ok_or_else(|| failed.clone())?;
+    let failed = HumsError::NoConvergence { what, iterations: limit };
+    let svd = a.try_svd(true, true, f64::EPSILON, limit).ok_or_else(|| failed.clone())?;
     let cut = svd.singular_values.max() * 1e-14;
     svd.solve(b, cut).map_err(|_| failed)
 }
@@ -145,33 +126,18 @@ fn pencil_roots(y: &[f64], order: usize) -> Result<(Vec<Complex<f64>>, Vec<f64>)
     let n = y.len();
     let l = (n / 2).max(order);
     let hankel = DMatrix::from_fn(n - l, l + 1, |i, j| y[i + j]);
-    let svd =
-        hankel
-            .try_svd(false, true, f64::EPSILON, 10_000)
-            .ok_or(HumsError::NoConvergence {
-                what: WHAT,
-                iterations: 10_000,
-            })?;
+    let svd = hankel
+        .try_svd(false, true, f64::EPSILON, 10_000)
+        .ok_or(HumsError::NoConvergence { what: WHAT, iterations: 10_000 })?;
     let Some(v_t) = svd.v_t else {
-        return Err(HumsError::NoConvergence {
-            what: WHAT,
-            iterations: 0,
-        });
+        return Err(HumsError::NoConvergence { what: WHAT, iterations: 0 });
     };
     // nalgebra does not promise an order unless asked: sort by size.
     let mut by_size: Vec<usize> = (0..svd.singular_values.len()).collect();
     by_size.sort_by(|a, b| svd.singular_values[*b].total_cmp(&svd.singular_values[*a]));
     let largest = svd.singular_values[by_size[0]];
-    let values: Vec<f64> = by_size
-        .iter()
-        .map(|k| svd.singular_values[*k] / largest)
-        .collect();
-    let rank = values
-        .iter()
-        .take(order)
-        .filter(|v| **v > 1e-14)
-        .count()
-        .max(1);
+    let values: Vec<f64> = by_size.iter().map(|k| svd.singular_values[*k] / largest).collect();
+    let rank = values.iter().take(order).filter(|v| **v > 1e-14).count().max(1);
     let v1 = DMatrix::from_fn(l, rank, |i, j| v_t[(by_size[j], i)]);
     let v2 = DMatrix::from_fn(l, rank, |i, j| v_t[(by_size[j], i + 1)]);
     let pencil = least_squares(WHAT, v1, &v2)?;

@@ -126,11 +126,7 @@ impl Moments {
     /// [`HumsError::Parameter`] for another order.
     pub fn standardized(&self, order: usize) -> Result<f64> {
         if !(2..ORDERS).contains(&order) {
-            return Err(HumsError::Parameter {
-                parameter: "moment order",
-                value: order as f64,
-                allowed: "2 to 8",
-            });
+            return Err(HumsError::Parameter { parameter: "moment order", value: order as f64, allowed: "2 to 8" });
         }
         if self.is_constant() {
             return Err(HumsError::Undefined {
@@ -139,8 +135,7 @@ impl Moments {
             });
         }
         let sigma_2 = self.central(2);
-        let power =
-            sigma_2.powi((order / 2) as i32) * if order % 2 == 1 { sigma_2.sqrt() } else { 1.0 };
+        let power = sigma_2.powi((order / 2) as i32) * if order % 2 == 1 { sigma_2.sqrt() } else { 1.0 };
         finite_or_out_of_range("standardised moment", self.central(order) / power)
     }
 
@@ -148,8 +143,7 @@ impl Moments {
     /// units in the last place of the peak.
     #[must_use]
     pub fn is_constant(&self) -> bool {
-        self.min >= self.max
-            || self.central(2).sqrt() <= 4.0 * f64::EPSILON * self.peak() * self.scale
+        self.min >= self.max || self.central(2).sqrt() <= 4.0 * f64::EPSILON * self.peak() * self.scale
     }
 
     fn central(&self, order: usize) -> f64 {
@@ -157,14 +151,7 @@ impl Moments {
     }
 
     fn empty(scale: f64) -> Self {
-        Self {
-            count: 0,
-            scale,
-            mean: 0.0,
-            sums: [0.0; ORDERS],
-            min: f64::INFINITY,
-            max: f64::NEG_INFINITY,
-        }
+        Self { count: 0, scale, mean: 0.0, sums: [0.0; ORDERS], min: f64::INFINITY, max: f64::NEG_INFINITY }
     }
 
     /// Joins the sums of a block (already scaled) into `self`.
@@ -172,11 +159,7 @@ impl Moments {
         let (n_a, n_b) = (self.count as f64, block.sums[0]);
         // Mean of the block, corrected by the residual first-order sum about `centre`.
         let mean_b = block.centre + block.sums[1] / n_b;
-        let mean = if self.count == 0 {
-            mean_b
-        } else {
-            self.mean + (mean_b - self.mean) * (n_b / (n_a + n_b))
-        };
+        let mean = if self.count == 0 { mean_b } else { self.mean + (mean_b - self.mean) * (n_b / (n_a + n_b)) };
         let b = shifted(&block.sums, block.centre - mean);
         if self.count == 0 {
             self.sums = b;
@@ -203,10 +186,7 @@ pub(crate) fn peak(signal: &[f64]) -> f64 {
             *lane = if a > *lane { a } else { *lane };
         }
     }
-    let rest = chunks
-        .remainder()
-        .iter()
-        .fold(0.0_f64, |m, x| m.max(x.abs()));
+    let rest = chunks.remainder().iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     lanes.iter().fold(rest, |m, x| m.max(*x))
 }
 
@@ -215,11 +195,7 @@ fn shifted(sums: &[f64; ORDERS], shift: f64) -> [f64; ORDERS] {
     for p in 1..ORDERS {
         power[p] = power[p - 1] * shift;
     }
-    std::array::from_fn(|p| {
-        (0..=p)
-            .map(|k| BINOMIAL[p][k] * power[p - k] * sums[k])
-            .sum()
-    })
+    std::array::from_fn(|p| (0..=p).map(|k| BINOMIAL[p][k] * power[p - k] * sums[k]).sum())
 }
 
 struct BlockSums {
@@ -317,20 +293,9 @@ impl MomentAccumulator {
     /// only its binary order of magnitude matters, and only outside 2^-60 to 2^60.
     #[must_use]
     pub fn with_peak(peak: f64) -> Self {
-        let exponent = if peak.is_finite() && peak > 0.0 {
-            peak.log2().floor()
-        } else {
-            0.0
-        };
-        let scale = if exponent.abs() > 60.0 {
-            (-exponent).clamp(-1000.0, 1000.0).exp2()
-        } else {
-            1.0
-        };
-        Self {
-            total: Moments::empty(scale),
-            pending: Vec::with_capacity(BLOCK),
-        }
+        let exponent = if peak.is_finite() && peak > 0.0 { peak.log2().floor() } else { 0.0 };
+        let scale = if exponent.abs() > 60.0 { (-exponent).clamp(-1000.0, 1000.0).exp2() } else { 1.0 };
+        Self { total: Moments::empty(scale), pending: Vec::with_capacity(BLOCK) }
     }
 
     /// Adds samples.
@@ -375,11 +340,7 @@ impl MomentAccumulator {
             self.absorb(&block)?;
         }
         if self.total.count == 0 {
-            return Err(HumsError::TooShort {
-                what: "moments",
-                needed: 1,
-                found: 0,
-            });
+            return Err(HumsError::TooShort { what: "moments", needed: 1, found: 0 });
         }
         if self.total.sums.iter().all(|s| s.is_finite()) {
             Ok(self.total)
@@ -395,11 +356,9 @@ impl MomentAccumulator {
                 Ok(())
             }
             Err(()) => match block.iter().position(|x| !x.is_finite()) {
-                Some(k) => Err(HumsError::NotFinite {
-                    what: "moments",
-                    index: self.total.count as usize + k,
-                    value: block[k],
-                }),
+                Some(k) => {
+                    Err(HumsError::NotFinite { what: "moments", index: self.total.count as usize + k, value: block[k] })
+                }
                 None => Err(HumsError::OutOfRange { what: "moments" }),
             },
         }

@@ -49,10 +49,7 @@ pub enum Interpolation {
 impl Default for Interpolation {
     /// Band-limited, L = 24, beta = 12: ripple 1e-6 up to 0.84 of the Nyquist frequency.
     fn default() -> Self {
-        Self::BandLimited {
-            half_width: 24,
-            beta: 12.0,
-        }
+        Self::BandLimited { half_width: 24, beta: 12.0 }
     }
 }
 
@@ -94,11 +91,7 @@ impl Resampler {
                     });
                 }
                 if !(0.0..=16.0).contains(&beta) {
-                    return Err(HumsError::Parameter {
-                        parameter: "Kaiser beta",
-                        value: beta,
-                        allowed: "0 to 16",
-                    });
+                    return Err(HumsError::Parameter { parameter: "Kaiser beta", value: beta, allowed: "0 to 16" });
                 }
                 kernel_table(half_width, beta)
             }
@@ -108,12 +101,7 @@ impl Resampler {
             Interpolation::BandLimited { half_width, .. } => by_phase(&kernel, half_width),
             _ => Vec::new(),
         };
-        Ok(Self {
-            method,
-            kernel,
-            phases,
-            slopes: Vec::new(),
-        })
+        Ok(Self { method, kernel, phases, slopes: Vec::new() })
     }
 
     /// The method.
@@ -128,9 +116,7 @@ impl Resampler {
         match self.method {
             Interpolation::Linear => 1,
             Interpolation::CubicSpline => SPLINE_MARGIN,
-            Interpolation::BandLimited { half_width, .. } => {
-                (half_width as f64 * step.max(1.0)).ceil() as usize + 1
-            }
+            Interpolation::BandLimited { half_width, .. } => (half_width as f64 * step.max(1.0)).ceil() as usize + 1,
         }
     }
 
@@ -166,12 +152,10 @@ impl Resampler {
                 let step = mean_step(positions);
                 let cutoff = if step > 1.0 { 1.0 / step } else { 1.0 };
                 let reach = half_width as f64 / cutoff;
-                out.extend(positions.iter().map(
-                    |&p| match self.whole_kernel(signal, p, half_width) {
-                        Some(value) if step <= 1.0 => value,
-                        _ => self.windowed_sinc(signal, p, cutoff, reach),
-                    },
-                ));
+                out.extend(positions.iter().map(|&p| match self.whole_kernel(signal, p, half_width) {
+                    Some(value) if step <= 1.0 => value,
+                    _ => self.windowed_sinc(signal, p, cutoff, reach),
+                }));
             }
         }
     }
@@ -272,11 +256,7 @@ fn sinc(x: f64) -> (f64, f64) {
         return (1.0 - z * z / 6.0, -PI * z / 3.0);
     }
     // sin(pi x) vanishes exactly at whole x, where the kernel must be exactly 0.
-    let s = if x.fract() == 0.0 {
-        0.0
-    } else {
-        (PI * x).sin()
-    };
+    let s = if x.fract() == 0.0 { 0.0 } else { (PI * x).sin() };
     let value = s / (PI * x);
     (value, ((PI * x).cos() - value) / x)
 }
@@ -321,11 +301,7 @@ pub fn resample(signal: &[f64], positions: &[f64], method: Interpolation) -> Res
     require_finite("resampling", signal)?;
     let end = (signal.len() - 1) as f64;
     if let Some(&p) = positions.iter().find(|p| !(**p >= 0.0 && **p <= end)) {
-        return Err(HumsError::Parameter {
-            parameter: "position",
-            value: p,
-            allowed: "0 to the last sample's index",
-        });
+        return Err(HumsError::Parameter { parameter: "position", value: p, allowed: "0 to the last sample's index" });
     }
     let mut out = Vec::with_capacity(positions.len());
     Resampler::new(method)?.evaluate(signal, positions, &mut out);
@@ -364,11 +340,7 @@ pub fn to_angle(
     require_finite(WHAT, signal)?;
     let mut resampler = Resampler::new(method)?;
     let slowest = shaft.speed_range().0;
-    let pad = if resampler.needs_margin() {
-        resampler.margin(rate / (slowest * per_turn as f64)) as f64
-    } else {
-        0.0
-    };
+    let pad = if resampler.needs_margin() { resampler.margin(rate / (slowest * per_turn as f64)) as f64 } else { 0.0 };
     let step = 1.0 / per_turn as f64;
     let (from, to) = shaft.time_range();
     let start = from.max(pad / rate);
@@ -393,28 +365,17 @@ pub fn to_angle(
     let mut positions = Vec::with_capacity(count);
     shaft.times_of(low * step, step, count, &mut positions);
     let last = (signal.len() - 1) as f64;
-    positions
-        .iter_mut()
-        .for_each(|t| *t = (*t * rate).clamp(0.0, last));
+    positions.iter_mut().for_each(|t| *t = (*t * rate).clamp(0.0, last));
     let mut samples = Vec::with_capacity(count);
     // In pieces, so that the cut-off follows the speed.
     for piece in positions.chunks(per_turn) {
         evaluate_piece(&mut resampler, signal, piece, &mut samples);
     }
-    Ok(AngleSignal {
-        samples,
-        first_turn: low * step,
-        per_turn,
-    })
+    Ok(AngleSignal { samples, first_turn: low * step, per_turn })
 }
 
 /// Evaluates increasing positions on the part of the signal that they need.
-pub(crate) fn evaluate_piece(
-    resampler: &mut Resampler,
-    signal: &[f64],
-    positions: &[f64],
-    out: &mut Vec<f64>,
-) {
+pub(crate) fn evaluate_piece(resampler: &mut Resampler, signal: &[f64], positions: &[f64], out: &mut Vec<f64>) {
     let (Some(&first), Some(&last)) = (positions.first(), positions.last()) else {
         return;
     };
@@ -426,10 +387,7 @@ pub(crate) fn evaluate_piece(
 }
 
 fn no_overlap(what: &'static str) -> HumsError {
-    HumsError::Undefined {
-        what,
-        reason: "record and tachometer share no point of the angle grid",
-    }
+    HumsError::Undefined { what, reason: "record and tachometer share no point of the angle grid" }
 }
 
 /// Samples per period so that no angle interval is longer than a time interval: the power of two at

@@ -130,18 +130,12 @@ impl PlanetaryStage {
     }
 
     fn validate(&self) -> Result<()> {
-        for (parameter, value) in [
-            ("ring teeth", self.ring_teeth),
-            ("planet teeth", self.planet_teeth),
-            ("sun teeth", self.sun_teeth),
-        ] {
+        for (parameter, value) in
+            [("ring teeth", self.ring_teeth), ("planet teeth", self.planet_teeth), ("sun teeth", self.sun_teeth)]
+        {
             require_positive(parameter, value as f64)?;
             if value > MAX_TEETH {
-                return Err(HumsError::Parameter {
-                    parameter,
-                    value: value as f64,
-                    allowed: "at most 10000",
-                });
+                return Err(HumsError::Parameter { parameter, value: value as f64, allowed: "at most 10000" });
             }
         }
         if !(2..=MAX_PER_MESH).contains(&self.samples_per_mesh) {
@@ -198,26 +192,13 @@ impl PlanetaryStage {
         self.validate()?;
         let mut sums = Sums::new(self.sun_teeth * self.samples_per_mesh);
         for &psi in &self.planet_angles {
-            self.collect(
-                records,
-                first_turn,
-                psi,
-                psi * self.sun_teeth as f64,
-                &mut sums,
-            )?;
+            self.collect(records, first_turn, psi, psi * self.sun_teeth as f64, &mut sums)?;
         }
         sums.finish()
     }
 
     /// Adds the windows of one planet's passes; `offset` is taken from the mesh count.
-    fn collect(
-        &self,
-        records: &[&[f64]],
-        first_turn: f64,
-        psi: f64,
-        offset: f64,
-        sums: &mut Sums,
-    ) -> Result<()> {
+    fn collect(&self, records: &[&[f64]], first_turn: f64, psi: f64, offset: f64, sums: &mut Sums) -> Result<()> {
         if records.len() != self.sensor_angles.len() {
             return Err(HumsError::LengthMismatch {
                 what: "records and sensors",
@@ -254,8 +235,7 @@ impl PlanetaryStage {
                     continue;
                 }
                 sums.passes += 1;
-                let count = first_turn * per_turn + (centre - reach) as f64
-                    - offset * self.samples_per_mesh as f64;
+                let count = first_turn * per_turn + (centre - reach) as f64 - offset * self.samples_per_mesh as f64;
                 let mut place = count.round().rem_euclid(turn) as usize;
                 for (k, x) in part.iter().enumerate() {
                     if place >= sums.weights.len() {
@@ -281,12 +261,7 @@ struct Sums {
 
 impl Sums {
     fn new(samples: usize) -> Self {
-        Self {
-            values: vec![0.0; samples],
-            weights: vec![0.0; samples],
-            passes: 0,
-            skipped: 0,
-        }
+        Self { values: vec![0.0; samples], weights: vec![0.0; samples], passes: 0, skipped: 0 }
     }
 
     fn finish(self) -> Result<Separated> {

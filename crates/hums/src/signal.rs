@@ -59,15 +59,7 @@ pub fn inspect(signal: &[f64], clip_run: usize) -> SignalQuality {
         clipped.retain(|run| signal[run.start].is_finite());
         clipped.sort_by_key(|run| run.start);
     }
-    SignalQuality {
-        samples: signal.len(),
-        gaps,
-        missing,
-        clipped,
-        constant,
-        min,
-        max,
-    }
+    SignalQuality { samples: signal.len(), gaps, missing, clipped, constant, min, max }
 }
 
 fn runs(signal: &[f64], hit: impl Fn(f64) -> bool, shortest: usize) -> Vec<Range<usize>> {
@@ -103,10 +95,7 @@ fn runs(signal: &[f64], hit: impl Fn(f64) -> bool, shortest: usize) -> Vec<Range
 pub fn fill_gaps(signal: &mut [f64], longest: usize) -> Result<usize> {
     let gaps = runs(signal, |x| !x.is_finite(), 1);
     if gaps.iter().map(Range::len).sum::<usize>() == signal.len() {
-        return Err(HumsError::Undefined {
-            what: "gap filling",
-            reason: "the record has no finite sample",
-        });
+        return Err(HumsError::Undefined { what: "gap filling", reason: "the record has no finite sample" });
     }
     if let Some(gap) = gaps.iter().find(|gap| gap.len() > longest) {
         return Err(HumsError::Parameter {
@@ -155,11 +144,7 @@ pub fn detrend(signal: &mut [f64], linear: bool) -> Result<()> {
     let mean = signal.iter().sum::<f64>() / n;
     let centre = (n - 1.0) / 2.0;
     let slope = if linear && signal.len() > 1 {
-        let cross: f64 = signal
-            .iter()
-            .enumerate()
-            .map(|(i, x)| (i as f64 - centre) * (x - mean))
-            .sum();
+        let cross: f64 = signal.iter().enumerate().map(|(i, x)| (i as f64 - centre) * (x - mean)).sum();
         cross / (n * (n * n - 1.0) / 12.0)
     } else {
         0.0

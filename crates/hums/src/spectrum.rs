@@ -36,13 +36,7 @@ impl Window {
         let terms: &[f64] = match self {
             Self::Rectangular => &[1.0],
             Self::Hann => &[0.5, 0.5],
-            Self::FlatTop => &[
-                0.215_578_95,
-                0.416_631_58,
-                0.277_263_158,
-                0.083_578_947,
-                0.006_947_368,
-            ],
+            Self::FlatTop => &[0.215_578_95, 0.416_631_58, 0.277_263_158, 0.083_578_947, 0.006_947_368],
         };
         (0..n)
             .map(|i| {
@@ -80,19 +74,11 @@ impl Spectrum {
         let weights = window.samples(n);
         let mut input: Vec<f64> = signal.iter().zip(&weights).map(|(x, w)| x * w).collect();
         let bins = forward(&mut input);
-        Ok(Self {
-            bins,
-            samples: n,
-            window_sum: weights.iter().sum(),
-        })
+        Ok(Self { bins, samples: n, window_sum: weights.iter().sum() })
     }
 
     pub(crate) fn from_bins(bins: Vec<Complex<f64>>, samples: usize) -> Self {
-        Self {
-            bins,
-            samples,
-            window_sum: samples as f64,
-        }
+        Self { bins, samples, window_sum: samples as f64 }
     }
 
     /// Complex bins `X_0 .. X_(N/2)`, not normalised.
@@ -112,32 +98,23 @@ impl Spectrum {
     /// # Errors
     /// [`HumsError::OrderNotResolved`] above the highest bin.
     pub fn amplitude(&self, k: usize) -> Result<f64> {
-        self.bins
-            .get(k)
-            .map(|bin| bin.norm() * self.factor(k))
-            .ok_or(HumsError::OrderNotResolved {
-                order: k,
-                highest: self.bins.len() - 1,
-                samples: self.samples,
-            })
+        self.bins.get(k).map(|bin| bin.norm() * self.factor(k)).ok_or(HumsError::OrderNotResolved {
+            order: k,
+            highest: self.bins.len() - 1,
+            samples: self.samples,
+        })
     }
 
     /// All amplitudes, `0..=N/2`.
     #[must_use]
     pub fn amplitudes(&self) -> Vec<f64> {
-        self.bins
-            .iter()
-            .enumerate()
-            .map(|(k, bin)| bin.norm() * self.factor(k))
-            .collect()
+        self.bins.iter().enumerate().map(|(k, bin)| bin.norm() * self.factor(k)).collect()
     }
 
     /// Frequencies of the bins, Hz (or orders, with the rate in samples per period).
     #[must_use]
     pub fn frequencies(&self, rate: f64) -> Vec<f64> {
-        (0..self.bins.len())
-            .map(|k| k as f64 * rate / self.samples as f64)
-            .collect()
+        (0..self.bins.len()).map(|k| k as f64 * rate / self.samples as f64).collect()
     }
 
     fn factor(&self, k: usize) -> f64 {
@@ -163,12 +140,7 @@ pub(crate) fn forward(input: &mut [f64]) -> Vec<Complex<f64>> {
 /// # Errors
 /// [`HumsError::TooShort`] when the record is shorter than a segment; [`HumsError::Parameter`] for
 /// `segment` below 2 or a rate that is not positive; non-finite samples.
-pub fn welch(
-    signal: &[f64],
-    rate: f64,
-    segment: usize,
-    window: Window,
-) -> Result<(Vec<f64>, Vec<f64>)> {
+pub fn welch(signal: &[f64], rate: f64, segment: usize, window: Window) -> Result<(Vec<f64>, Vec<f64>)> {
     let map = spectrogram(signal, rate, segment, segment - segment / 2, window)?;
     let mut density = vec![0.0; map.frequencies.len()];
     for row in map.density.chunks_exact(map.frequencies.len()) {
@@ -196,13 +168,7 @@ pub struct Spectrogram {
 ///
 /// # Errors
 /// As [`welch`]; [`HumsError::Parameter`] for `hop` = 0.
-pub fn spectrogram(
-    signal: &[f64],
-    rate: f64,
-    segment: usize,
-    hop: usize,
-    window: Window,
-) -> Result<Spectrogram> {
+pub fn spectrogram(signal: &[f64], rate: f64, segment: usize, hop: usize, window: Window) -> Result<Spectrogram> {
     require_positive("sampling rate", rate)?;
     if segment < 2 {
         return Err(HumsError::Parameter {
@@ -212,11 +178,7 @@ pub fn spectrogram(
         });
     }
     if hop == 0 {
-        return Err(HumsError::Parameter {
-            parameter: "hop",
-            value: 0.0,
-            allowed: "at least 1 sample",
-        });
+        return Err(HumsError::Parameter { parameter: "hop", value: 0.0, allowed: "at least 1 sample" });
     }
     require_len("spectrogram", signal, segment)?;
     require_finite("spectrogram", signal)?;
@@ -241,12 +203,8 @@ pub fn spectrogram(
         }));
     }
     Ok(Spectrogram {
-        times: (0..rows)
-            .map(|row| (row * hop) as f64 / rate + segment as f64 / (2.0 * rate))
-            .collect(),
-        frequencies: (0..bins.len())
-            .map(|k| k as f64 * rate / segment as f64)
-            .collect(),
+        times: (0..rows).map(|row| (row * hop) as f64 / rate + segment as f64 / (2.0 * rate)).collect(),
+        frequencies: (0..bins.len()).map(|k| k as f64 * rate / segment as f64).collect(),
         density,
     })
 }

@@ -128,15 +128,8 @@ pub fn repair(times: &[f64]) -> Result<RepairedPulses> {
     let first_guess = median(&mut recent);
     // The first pulse may itself be an extra one: begin with the pulse followed by a good interval.
     let fits = |dt: f64, expected: f64| (dt / expected - 1.0).abs() < 0.25;
-    let start = (0..times.len().min(8) - 1)
-        .find(|&i| fits(times[i + 1] - times[i], first_guess))
-        .unwrap_or(0);
-    let mut kept = RepairedPulses {
-        times: vec![times[start]],
-        numbers: vec![0],
-        missing: 0,
-        extra: start as u64,
-    };
+    let start = (0..times.len().min(8) - 1).find(|&i| fits(times[i + 1] - times[i], first_guess)).unwrap_or(0);
+    let mut kept = RepairedPulses { times: vec![times[start]], numbers: vec![0], missing: 0, extra: start as u64 };
     let mut intervals = vec![first_guess; 1];
     let mut i = start + 1;
     while i < times.len() {
@@ -227,21 +220,13 @@ impl Shaft {
         require_positive("speed", speed)?;
         require_positive("sampling rate", rate)?;
         if samples < 2 {
-            return Err(HumsError::TooShort {
-                what: "constant-speed shaft",
-                needed: 2,
-                found: samples,
-            });
+            return Err(HumsError::TooShort { what: "constant-speed shaft", needed: 2, found: samples });
         }
         let end = (samples - 1) as f64 / rate;
         if !(MIN_SPEED < speed && speed < 1.0 / MIN_SPEED && (end * speed).is_finite()) {
             return Err(tachometer("the speed is outside 1e-100 to 1e100 Hz", 0));
         }
-        Ok(Self {
-            turns: vec![0.0, end * speed],
-            times: vec![0.0, end],
-            slopes: vec![1.0 / speed; 2],
-        })
+        Ok(Self { turns: vec![0.0, end * speed], times: vec![0.0, end], slopes: vec![1.0 / speed; 2] })
     }
 
     /// From pulse times (s), `per_turn` pulses a revolution, taken as they are; turn 0 is the first.
@@ -308,11 +293,7 @@ impl Shaft {
             let right = secant(i.min(n - 2));
             *slope = slope.max(0.0).min(3.0 * left.min(right));
         }
-        Ok(Self {
-            turns,
-            times,
-            slopes,
-        })
+        Ok(Self { turns, times, slopes })
     }
 
     /// Another shaft geared to this one: it makes `ratio` turns for each turn of this one
@@ -322,11 +303,7 @@ impl Shaft {
     /// [`HumsError::Parameter`] unless the ratio is between 1e-9 and 1e9.
     pub fn geared(&self, ratio: f64) -> Result<Self> {
         if !(1e-9..=1e9).contains(&ratio) {
-            return Err(HumsError::Parameter {
-                parameter: "gear ratio",
-                value: ratio,
-                allowed: "1e-9 to 1e9",
-            });
+            return Err(HumsError::Parameter { parameter: "gear ratio", value: ratio, allowed: "1e-9 to 1e9" });
         }
         Ok(Self {
             turns: self.turns.iter().map(|x| x * ratio).collect(),
@@ -425,8 +402,6 @@ impl Shaft {
         let speeds = self.turns.windows(2).zip(self.times.windows(2));
         speeds
             .map(|(a, t)| (a[1] - a[0]) / (t[1] - t[0]))
-            .fold((f64::INFINITY, 0.0), |(low, high), v| {
-                (f64::min(low, v), f64::max(high, v))
-            })
+            .fold((f64::INFINITY, 0.0), |(low, high), v| (f64::min(low, v), f64::max(high, v)))
     }
 }

@@ -31,11 +31,7 @@ use crate::error::{HumsError, Result, require_finite, require_len};
 pub fn mean_plus_k_sigma(healthy: &[f64], k: f64) -> Result<f64> {
     require_len("mean + k sigma threshold", healthy, 2)?;
     if !k.is_finite() {
-        return Err(HumsError::Parameter {
-            parameter: "k",
-            value: k,
-            allowed: "finite",
-        });
+        return Err(HumsError::Parameter { parameter: "k", value: k, allowed: "finite" });
     }
     let moments = crate::moments::Moments::of(healthy)?;
     let n = healthy.len() as f64;
@@ -64,11 +60,7 @@ fn check_share(share: f64) -> Result<()> {
     if (0.0..=1.0).contains(&share) {
         Ok(())
     } else {
-        Err(HumsError::Parameter {
-            parameter: "share",
-            value: share,
-            allowed: "0 to 1",
-        })
+        Err(HumsError::Parameter { parameter: "share", value: share, allowed: "0 to 1" })
     }
 }
 
@@ -84,18 +76,13 @@ fn gaussian_moment(p: usize) -> f64 {
 /// [`HumsError::Parameter`] for another order or no samples.
 pub fn gaussian_standard_error(order: usize, samples: usize) -> Result<f64> {
     if samples == 0 {
-        return Err(HumsError::TooShort {
-            what: "standard error",
-            needed: 1,
-            found: 0,
-        });
+        return Err(HumsError::TooShort { what: "standard error", needed: 1, found: 0 });
     }
     let variance = match order {
         3 => 6.0,
         4 | 6 | 8 => {
             let (p, m) = (order as f64, gaussian_moment(order));
-            gaussian_moment(2 * order) - m * m - p * m * (gaussian_moment(order + 2) - m)
-                + p * p * m * m / 2.0
+            gaussian_moment(2 * order) - m * m - p * m * (gaussian_moment(order + 2) - m) + p * p * m * m / 2.0
         }
         _ => {
             return Err(HumsError::Parameter {
@@ -131,11 +118,7 @@ impl Rate {
         require_len("rate", values, 1)?;
         require_finite("rate", values)?;
         if threshold.is_nan() {
-            return Err(HumsError::Parameter {
-                parameter: "threshold",
-                value: threshold,
-                allowed: "a number",
-            });
+            return Err(HumsError::Parameter { parameter: "threshold", value: threshold, allowed: "a number" });
         }
         let hits = values.iter().filter(|v| **v > threshold).count();
         let (n, p) = (values.len() as f64, hits as f64 / values.len() as f64);
@@ -144,12 +127,7 @@ impl Rate {
         let shrink = 1.0 + z * z / n;
         let centre = (p + z * z / (2.0 * n)) / shrink;
         let half = z / shrink * (p * (1.0 - p) / n + z * z / (4.0 * n * n)).sqrt();
-        Ok(Self {
-            hits,
-            cases: values.len(),
-            low: (centre - half).max(0.0),
-            high: (centre + half).min(1.0),
-        })
+        Ok(Self { hits, cases: values.len(), low: (centre - half).max(0.0), high: (centre + half).min(1.0) })
     }
 
     /// The share.
@@ -196,11 +174,7 @@ impl Roc {
         };
         let (h, d) = (descending(healthy), descending(damaged));
         let (nh, nd) = (h.len() as f64, d.len() as f64);
-        let mut points = vec![RocPoint {
-            threshold: f64::INFINITY,
-            false_alarm_rate: 0.0,
-            detection_rate: 0.0,
-        }];
+        let mut points = vec![RocPoint { threshold: f64::INFINITY, false_alarm_rate: 0.0, detection_rate: 0.0 }];
         let (mut i, mut j) = (0, 0);
         // Twice the Mann-Whitney count, in whole numbers: exact.
         let mut doubled: u128 = 0;
@@ -220,21 +194,14 @@ impl Roc {
             }
             // Healthy cases at this value: all damaged ones above win, those equal tie.
             doubled += (i - i0) as u128 * (2 * j0 as u128 + (j - j0) as u128);
-            points.push(RocPoint {
-                threshold: next,
-                false_alarm_rate: i as f64 / nh,
-                detection_rate: j as f64 / nd,
-            });
+            points.push(RocPoint { threshold: next, false_alarm_rate: i as f64 / nh, detection_rate: j as f64 / nd });
         }
         // An alarm is strictly above the threshold, so a point's rates belong to any threshold just
         // below its value.
         for k in 1..points.len() {
             points[k].threshold = points[k].threshold.next_down();
         }
-        Ok(Self {
-            area: doubled as f64 / (2.0 * nh * nd),
-            points,
-        })
+        Ok(Self { area: doubled as f64 / (2.0 * nh * nd), points })
     }
 
     /// Best detection rate at a false-alarm rate of at most `rate`, with its threshold.
@@ -251,9 +218,7 @@ impl Roc {
 /// # Errors
 /// As [`Rate::above`].
 pub fn detection_curve<S: AsRef<[f64]>>(sets: &[S], threshold: f64) -> Result<Vec<Rate>> {
-    sets.iter()
-        .map(|set| Rate::above(set.as_ref(), threshold))
-        .collect()
+    sets.iter().map(|set| Rate::above(set.as_ref(), threshold)).collect()
 }
 
 /// When a sequence of records raises an alarm.

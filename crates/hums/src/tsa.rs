@@ -44,12 +44,7 @@ impl TsaOptions {
     /// One turn of the shaft, all blocks, band-limited interpolation.
     #[must_use]
     pub fn per_turn(samples_per_period: usize) -> Self {
-        Self {
-            samples_per_period,
-            period_turns: 1.0,
-            max_blocks: None,
-            interpolation: Interpolation::default(),
-        }
+        Self { samples_per_period, period_turns: 1.0, max_blocks: None, interpolation: Interpolation::default() }
     }
 }
 
@@ -121,17 +116,10 @@ pub fn average(signal: &[f64], rate: f64, shaft: &Shaft, options: &TsaOptions) -
 /// # Errors
 /// [`HumsError::Undefined`] when there is not one whole period without gaps;
 /// [`HumsError::Parameter`] for `per_period` = 0.
-pub fn average_periods(
-    signal: &[f64],
-    per_period: usize,
-    max_blocks: Option<usize>,
-) -> Result<Average> {
+pub fn average_periods(signal: &[f64], per_period: usize, max_blocks: Option<usize>) -> Result<Average> {
     require_positive("samples per period", per_period as f64)?;
     let mut sums = Sums::new(per_period);
-    for block in signal
-        .chunks_exact(per_period)
-        .take(max_blocks.unwrap_or(usize::MAX))
-    {
+    for block in signal.chunks_exact(per_period).take(max_blocks.unwrap_or(usize::MAX)) {
         sums.add(block);
     }
     sums.finish()
@@ -148,12 +136,7 @@ struct Sums {
 
 impl Sums {
     fn new(samples: usize) -> Self {
-        Self {
-            mean: vec![0.0; samples],
-            squares: vec![0.0; samples],
-            blocks: 0,
-            skipped: 0,
-        }
+        Self { mean: vec![0.0; samples], squares: vec![0.0; samples], blocks: 0, skipped: 0 }
     }
 
     fn add(&mut self, block: &[f64]) {
@@ -183,12 +166,7 @@ impl Sums {
         }
         let divisor = (self.blocks.max(2) - 1) as f64;
         let spread = self.squares.iter().map(|s| (s / divisor).max(0.0).sqrt());
-        Ok(Average {
-            spread: spread.collect(),
-            samples: self.mean,
-            blocks: self.blocks,
-            skipped: self.skipped,
-        })
+        Ok(Average { spread: spread.collect(), samples: self.mean, blocks: self.blocks, skipped: self.skipped })
     }
 }
 
@@ -250,11 +228,7 @@ impl Averager {
         }
         // The first whole period after sample 0; pulses may come before it.
         let (first_turn, last_turn) = shaft.turn_range();
-        let start = if shaft.time_range().0 >= 0.0 {
-            first_turn
-        } else {
-            shaft.turn_at(0.0).unwrap_or(last_turn)
-        };
+        let start = if shaft.time_range().0 >= 0.0 { first_turn } else { shaft.turn_at(0.0).unwrap_or(last_turn) };
         let next = (start / options.period_turns - 1e-9).ceil();
         // Whole numbers stay exact as blocks are counted on.
         if !(next.abs() < 1e15) {
@@ -312,8 +286,7 @@ impl Averager {
                     if part.iter().all(|x| x.is_finite()) {
                         self.positions.iter_mut().for_each(|p| *p -= from as f64);
                         self.block.clear();
-                        self.resampler
-                            .evaluate(part, &self.positions, &mut self.block);
+                        self.resampler.evaluate(part, &self.positions, &mut self.block);
                         self.sums.add(&self.block);
                     } else {
                         self.sums.skipped += 1;
@@ -352,16 +325,11 @@ impl Averager {
             return Place::End;
         }
         self.positions.clear();
-        self.shaft
-            .times_of(first_turn, step_turns, count, &mut self.positions);
+        self.shaft.times_of(first_turn, step_turns, count, &mut self.positions);
         self.positions.iter_mut().for_each(|t| *t *= self.rate);
         let margin = self.resampler.margin(self.step());
         let (first, last) = (self.positions[0], self.positions[count - 1]);
-        let must = if self.resampler.needs_margin() {
-            margin as f64
-        } else {
-            0.0
-        };
+        let must = if self.resampler.needs_margin() { margin as f64 } else { 0.0 };
         // Rounding may put the first position an ulp before sample 0.
         if first - must < -1e-6 {
             return Place::Before;

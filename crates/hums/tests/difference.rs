@@ -21,12 +21,7 @@ fn analytic_matches_fourier_sum() {
             let phase = |i: usize| TAU * ((order * i) % n) as f64 / n as f64;
             let sides = if 2 * order == n { 1.0 } else { 2.0 };
             let part = |f: fn(f64) -> f64| -> f64 {
-                x.iter()
-                    .enumerate()
-                    .map(|(i, v)| v * f(phase(i)))
-                    .sum::<f64>()
-                    * sides
-                    / n as f64
+                x.iter().enumerate().map(|(i, v)| v * f(phase(i))).sum::<f64>() * sides / n as f64
             };
             let (a, b) = (part(f64::cos), part(f64::sin));
             for (i, v) in expected.iter_mut().enumerate() {
@@ -43,22 +38,13 @@ fn analytic_removed_orders() {
     let rule = RemovalRule::sidebands(10, 2);
     assert_eq!(rule.residual_orders(64), [10, 20, 30]);
     // Order 34 = 2 below the fourth harmonic is above Nyquist (32); 38 and 39 too.
-    assert_eq!(
-        rule.difference_orders(64),
-        [8, 9, 10, 11, 12, 18, 19, 20, 21, 22, 28, 29, 30, 31, 32]
-    );
+    assert_eq!(rule.difference_orders(64), [8, 9, 10, 11, 12, 18, 19, 20, 21, 22, 28, 29, 30, 31, 32]);
     // A harmonic above Nyquist still has its lower sidebands removed.
-    assert_eq!(
-        RemovalRule::sidebands(10, 2).difference_orders(39),
-        [8, 9, 10, 11, 12, 18, 19]
-    );
+    assert_eq!(RemovalRule::sidebands(10, 2).difference_orders(39), [8, 9, 10, 11, 12, 18, 19]);
     let common = RemovalRule::shaft_and_mesh(10);
     assert_eq!(common.residual_orders(64), [0, 1, 2, 10, 20, 30]);
     // Planet-pass sidebands of a carrier average: 99 ring teeth, 3 planets.
-    let carrier = RemovalRule {
-        sideband_spacing: 3,
-        ..RemovalRule::sidebands(99, 1)
-    };
+    let carrier = RemovalRule { sideband_spacing: 3, ..RemovalRule::sidebands(99, 1) };
     assert_eq!(carrier.difference_orders(300), [96, 99, 102]);
 }
 
@@ -75,12 +61,7 @@ fn invariant_projection() {
         let energy = rms(&s.difference).powi(2) + rms(&s.regular).powi(2);
         close(energy, rms(&x).powi(2), 1e-12);
         // Additive, by construction of the regular signal.
-        let sum: Vec<f64> = s
-            .difference
-            .iter()
-            .zip(&s.regular)
-            .map(|(d, r)| d + r)
-            .collect();
+        let sum: Vec<f64> = s.difference.iter().zip(&s.regular).map(|(d, r)| d + r).collect();
         assert!(max_difference(&sum, &x) < 1e-14);
         // More sidebands removed, less energy left.
         let fewer = split(&x, &RemovalRule::sidebands(33, k.saturating_sub(1))).unwrap();
@@ -103,25 +84,11 @@ fn analytic_residual_keeps_sidebands() {
 
 #[test]
 fn analytic_exact_difference_and_its_faults() {
-    assert_eq!(
-        exact_difference(&[3.0, 5.0], &[1.0, 7.0]).unwrap(),
-        [2.0, -2.0]
-    );
-    assert!(matches!(
-        exact_difference(&[1.0], &[1.0, 2.0]),
-        Err(HumsError::LengthMismatch {
-            left: 1,
-            right: 2,
-            ..
-        })
-    ));
+    assert_eq!(exact_difference(&[3.0, 5.0], &[1.0, 7.0]).unwrap(), [2.0, -2.0]);
+    assert!(matches!(exact_difference(&[1.0], &[1.0, 2.0]), Err(HumsError::LengthMismatch { left: 1, right: 2, .. })));
     assert!(matches!(
         split(&[0.0; 16], &RemovalRule::sidebands(9, 0)),
-        Err(HumsError::OrderNotResolved {
-            order: 9,
-            highest: 8,
-            ..
-        })
+        Err(HumsError::OrderNotResolved { order: 9, highest: 8, .. })
     ));
     assert_eq!(whole_mesh_order(99.0 / 3.0).unwrap(), 33);
     assert!(whole_mesh_order(98.0 / 3.0).is_err());

@@ -24,35 +24,18 @@ fn finite_or_reason(table: &[Entry]) {
 }
 
 fn value(table: &[Entry], indicator: Indicator) -> &hums::Result<f64> {
-    &table
-        .iter()
-        .find(|e| e.indicator == indicator)
-        .unwrap()
-        .value
+    &table.iter().find(|e| e.indicator == indicator).unwrap().value
 }
 
 #[test]
 fn extreme_zeros() {
     let table = signal_indicators(&[0.0; 1000], SignalKind::Raw).unwrap();
     finite_or_reason(&table);
-    for zero in [
-        Indicator::Mean,
-        Indicator::Rms,
-        Indicator::Peak,
-        Indicator::PeakToPeak,
-    ] {
+    for zero in [Indicator::Mean, Indicator::Rms, Indicator::Peak, Indicator::PeakToPeak] {
         assert_eq!(value(&table, zero), &Ok(0.0));
     }
-    for undefined in [
-        Indicator::CrestFactor,
-        Indicator::Skewness,
-        Indicator::Kurtosis,
-        Indicator::EnergyOperator,
-    ] {
-        assert!(matches!(
-            value(&table, undefined),
-            Err(HumsError::Undefined { .. })
-        ));
+    for undefined in [Indicator::CrestFactor, Indicator::Skewness, Indicator::Kurtosis, Indicator::EnergyOperator] {
+        assert!(matches!(value(&table, undefined), Err(HumsError::Undefined { .. })));
     }
     let analyzer = GearAnalyzer::new(1000, &RemovalRule::sidebands(27, 1)).unwrap();
     finite_or_reason(&analyzer.analyze(&[0.0; 1000]).unwrap().table);
@@ -67,30 +50,16 @@ fn extreme_constant_signals_are_constant_at_any_size() {
             let x = vec![c; n];
             let table = signal_indicators(&x, SignalKind::Raw).unwrap();
             finite_or_reason(&table);
-            close(
-                value(&table, Indicator::Rms).clone().unwrap(),
-                c.abs(),
-                1e-15,
-            );
-            close(
-                value(&table, Indicator::CrestFactor).clone().unwrap(),
-                1.0,
-                1e-15,
-            );
-            assert!(matches!(
-                value(&table, Indicator::Kurtosis),
-                Err(HumsError::Undefined { .. })
-            ));
+            close(value(&table, Indicator::Rms).clone().unwrap(), c.abs(), 1e-15);
+            close(value(&table, Indicator::CrestFactor).clone().unwrap(), 1.0, 1e-15);
+            assert!(matches!(value(&table, Indicator::Kurtosis), Err(HumsError::Undefined { .. })));
             let quality = inspect(&x, 3);
             assert!(quality.constant && quality.clipped.is_empty());
         }
     }
     // NA4 of constant residuals has no reference.
     let mut na4 = QuasiKurtosis::new(Memory::Running).unwrap();
-    assert!(matches!(
-        na4.update(&[0.1; 50]),
-        Err(HumsError::Undefined { .. })
-    ));
+    assert!(matches!(na4.update(&[0.1; 50]), Err(HumsError::Undefined { .. })));
 }
 
 #[test]
@@ -98,29 +67,15 @@ fn extreme_one_and_two_samples() {
     let table = signal_indicators(&[3.0], SignalKind::Raw).unwrap();
     finite_or_reason(&table);
     assert_eq!(value(&table, Indicator::Rms), &Ok(3.0));
-    assert!(matches!(
-        value(&table, Indicator::EnergyOperator),
-        Err(HumsError::TooShort {
-            needed: 3,
-            found: 1,
-            ..
-        })
-    ));
+    assert!(matches!(value(&table, Indicator::EnergyOperator), Err(HumsError::TooShort { needed: 3, found: 1, .. })));
     close(basic::kurtosis(&[1.0, 2.0]).unwrap(), 1.0, 1e-15);
-    assert_eq!(
-        Spectrum::of(&[3.0], Window::Rectangular)
-            .unwrap()
-            .amplitudes(),
-        [3.0]
-    );
+    assert_eq!(Spectrum::of(&[3.0], Window::Rectangular).unwrap().amplitudes(), [3.0]);
     assert_eq!(envelope(&[3.0]).unwrap(), [3.0]);
     assert!(split(&[1.0], &RemovalRule::sidebands(1, 0)).is_err());
-    assert!(
-        GearAnalyzer::new(2, &RemovalRule::sidebands(1, 1)).is_ok_and(|a| {
-            finite_or_reason(&a.analyze(&[1.0, 2.0]).unwrap().table);
-            true
-        })
-    );
+    assert!(GearAnalyzer::new(2, &RemovalRule::sidebands(1, 1)).is_ok_and(|a| {
+        finite_or_reason(&a.analyze(&[1.0, 2.0]).unwrap().table);
+        true
+    }));
 }
 
 #[test]
@@ -146,35 +101,18 @@ fn extreme_gaps_are_named_filled_or_refused() {
         Err(HumsError::NotFinite { index, .. }) => Some(*index),
         _ => None,
     };
-    for found in [
-        basic::rms(&x),
-        basic::kurtosis(&x),
-        basic::energy_operator(&x),
-        basic::normalized_moment(&x, 3.0),
-    ] {
+    for found in [basic::rms(&x), basic::kurtosis(&x), basic::energy_operator(&x), basic::normalized_moment(&x, 3.0)] {
         assert_eq!(index(&found), Some(300), "{found:?}");
     }
     assert!(Spectrum::of(&x, Window::Hann).is_err());
     assert!(envelope(&x).is_err() && demodulate(&x, 20, 5).is_err());
     assert!(spectrogram(&x, 1.0, 100, 50, Window::Hann).is_err());
-    assert!(
-        GearAnalyzer::new(1000, &RemovalRule::sidebands(27, 1))
-            .unwrap()
-            .analyze(&x)
-            .is_err()
-    );
+    assert!(GearAnalyzer::new(1000, &RemovalRule::sidebands(27, 1)).unwrap().analyze(&x).is_err());
     let quality = inspect(&x, 3);
-    assert_eq!(
-        (quality.gaps.clone(), quality.missing),
-        (vec![300..302, 999..1000], 3)
-    );
+    assert_eq!((quality.gaps.clone(), quality.missing), (vec![300..302, 999..1000], 3));
     let before = x.clone();
     assert!(fill_gaps(&mut x, 1).is_err());
-    assert!(
-        x.iter()
-            .zip(&before)
-            .all(|(a, b)| a.to_bits() == b.to_bits())
-    );
+    assert!(x.iter().zip(&before).all(|(a, b)| a.to_bits() == b.to_bits()));
     assert_eq!(fill_gaps(&mut x, 2).unwrap(), 3);
     // Straight lines across two samples of a sine of 200 samples a period: h^2 w^2 / 8 = 1.2e-3.
     assert!(max_difference(&x[..999], &sine(1000, 5.0, 1.0, 0.2)[..999]) < 1.3e-3);
@@ -184,17 +122,13 @@ fn extreme_gaps_are_named_filled_or_refused() {
 
 #[test]
 fn extreme_clipped_signals() {
-    let x: Vec<f64> = sine(10_000, 50.0, 1.0, 0.0)
-        .iter()
-        .map(|v| v.clamp(-0.8, 0.8))
-        .collect();
+    let x: Vec<f64> = sine(10_000, 50.0, 1.0, 0.0).iter().map(|v| v.clamp(-0.8, 0.8)).collect();
     let quality = inspect(&x, 3);
     assert_eq!(quality.clipped.len(), 100);
     assert!(!quality.is_clean());
     // RMS of a sine clipped at c = sin a: 1/2 - a/pi ... by parts over a quarter period.
     let a = 0.8_f64.asin();
-    let square = (a - a.sin() * a.cos() + 2.0 * 0.64 * (std::f64::consts::FRAC_PI_2 - a))
-        / std::f64::consts::PI;
+    let square = (a - a.sin() * a.cos() + 2.0 * 0.64 * (std::f64::consts::FRAC_PI_2 - a)) / std::f64::consts::PI;
     close(basic::rms(&x).unwrap(), square.sqrt(), 1e-4);
     assert!(inspect(&sine(10_000, 50.0, 1.0, 0.1), 3).clipped.is_empty());
 }
@@ -203,10 +137,7 @@ fn extreme_clipped_signals() {
 fn extreme_whole_numbers_of_24_bits() {
     // Raw counts about a large offset: the moments must not lose digits to it.
     let full = 8_388_607.0;
-    let counts: Vec<f64> = gaussian(50_000, 40)
-        .iter()
-        .map(|g| (g * 20.0).round() + full - 200.0)
-        .collect();
+    let counts: Vec<f64> = gaussian(50_000, 40).iter().map(|g| (g * 20.0).round() + full - 200.0).collect();
     let centred: Vec<f64> = counts.iter().map(|c| c - (full - 200.0)).collect();
     for of in [basic::kurtosis, basic::m6a, basic::m8a] {
         close(of(&counts).unwrap(), of(&centred).unwrap(), 1e-9);
@@ -215,11 +146,7 @@ fn extreme_whole_numbers_of_24_bits() {
     let skewness = basic::skewness(&counts).unwrap() - basic::skewness(&centred).unwrap();
     assert!(skewness.abs() < 1e-9);
     let scaled: Vec<f64> = counts.iter().map(|c| c / 8_388_608.0).collect();
-    close(
-        basic::kurtosis(&scaled).unwrap(),
-        basic::kurtosis(&counts).unwrap(),
-        1e-12,
-    );
+    close(basic::kurtosis(&scaled).unwrap(), basic::kurtosis(&counts).unwrap(), 1e-12);
     assert_eq!(Moments::of(&counts).unwrap().count(), 50_000);
 }
 
@@ -230,11 +157,7 @@ fn extreme_scales_do_not_overflow() {
     for scale in [1e-300, 1e-60, 1e60, 1e300] {
         let y: Vec<f64> = x.iter().map(|v| v * scale).collect();
         close(basic::m8a(&y).unwrap(), kurtosis, 1e-9);
-        close(
-            basic::energy_operator(&y).unwrap(),
-            basic::energy_operator(&x).unwrap(),
-            1e-9,
-        );
+        close(basic::energy_operator(&y).unwrap(), basic::energy_operator(&x).unwrap(), 1e-9);
         finite_or_reason(&signal_indicators(&y, SignalKind::Difference).unwrap());
         let analyzer = GearAnalyzer::new(4096, &RemovalRule::sidebands(27, 2)).unwrap();
         finite_or_reason(&analyzer.analyze(&y).unwrap().table);

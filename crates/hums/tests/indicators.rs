@@ -31,31 +31,18 @@ fn analytic_sine() {
     close(basic::m8a(&x).unwrap(), 4.375, EXACT);
     assert!(basic::skewness(&x).unwrap().abs() < EXACT);
     // A sine has constant Teager energy.
-    assert!(matches!(
-        basic::energy_operator(&x),
-        Err(HumsError::Undefined { .. })
-    ));
+    assert!(matches!(basic::energy_operator(&x), Err(HumsError::Undefined { .. })));
 }
 
 #[test]
 fn analytic_square_and_offset() {
-    let x: Vec<f64> = (0..1000)
-        .map(|i| if i % 2 == 0 { 3.0 } else { 1.0 })
-        .collect();
+    let x: Vec<f64> = (0..1000).map(|i| if i % 2 == 0 { 3.0 } else { 1.0 }).collect();
     close(basic::rms(&x).unwrap(), 5.0_f64.sqrt(), EXACT);
     close(basic::kurtosis(&x).unwrap(), 1.0, EXACT);
     close(basic::m8a(&x).unwrap(), 1.0, EXACT);
     let crest = |d| basic::crest_factor(&x, d).unwrap();
-    close(
-        crest(CrestDefinition::AbsolutePeak),
-        3.0 / 5.0_f64.sqrt(),
-        EXACT,
-    );
-    close(
-        crest(CrestDefinition::PeakToPeak),
-        2.0 / 5.0_f64.sqrt(),
-        EXACT,
-    );
+    close(crest(CrestDefinition::AbsolutePeak), 3.0 / 5.0_f64.sqrt(), EXACT);
+    close(crest(CrestDefinition::PeakToPeak), 2.0 / 5.0_f64.sqrt(), EXACT);
 }
 
 #[test]
@@ -67,29 +54,13 @@ fn analytic_impulse_train() {
     let central = |k: i32| p * (1.0 - p).powi(k) + (1.0 - p) * (-p).powi(k);
     let sigma = central(2).sqrt();
     close(basic::rms(&x).unwrap(), p.sqrt(), EXACT);
-    close(
-        basic::skewness(&x).unwrap(),
-        central(3) / sigma.powi(3),
-        EXACT,
-    );
-    close(
-        basic::kurtosis(&x).unwrap(),
-        central(4) / sigma.powi(4),
-        EXACT,
-    );
+    close(basic::skewness(&x).unwrap(), central(3) / sigma.powi(3), EXACT);
+    close(basic::kurtosis(&x).unwrap(), central(4) / sigma.powi(4), EXACT);
     close(basic::m6a(&x).unwrap(), central(6) / sigma.powi(6), EXACT);
     close(basic::m8a(&x).unwrap(), central(8) / sigma.powi(8), EXACT);
-    close(
-        basic::crest_factor(&x, CrestDefinition::AbsolutePeak).unwrap(),
-        1.0 / p.sqrt(),
-        EXACT,
-    );
+    close(basic::crest_factor(&x, CrestDefinition::AbsolutePeak).unwrap(), 1.0 / p.sqrt(), EXACT);
     // Isolated impulses are their own Teager energy.
-    close(
-        basic::energy_operator(&x).unwrap(),
-        central(4) / sigma.powi(4),
-        EXACT,
-    );
+    close(basic::energy_operator(&x).unwrap(), central(4) / sigma.powi(4), EXACT);
 }
 
 #[test]
@@ -112,10 +83,7 @@ fn analytic_gaussian_limits() {
         (Indicator::Kurtosis, basic::kurtosis(&x).unwrap()),
         (Indicator::M6a, basic::m6a(&x).unwrap()),
         (Indicator::M8a, basic::m8a(&x).unwrap()),
-        (
-            Indicator::EnergyOperator,
-            basic::energy_operator(&x).unwrap(),
-        ),
+        (Indicator::EnergyOperator, basic::energy_operator(&x).unwrap()),
     ] {
         close(found, indicator.gaussian_value().unwrap(), 0.03);
     }
@@ -139,11 +107,7 @@ fn invariant_offset_does_not_cancel_digits() {
     let x = gaussian(50_000, 4);
     let shifted: Vec<f64> = x.iter().map(|v| v + 1e6).collect();
     // The samples themselves lose 1e6 * 1.1e-16 = 1.2e-10 each, at random.
-    close(
-        basic::kurtosis(&shifted).unwrap(),
-        basic::kurtosis(&x).unwrap(),
-        1e-10,
-    );
+    close(basic::kurtosis(&shifted).unwrap(), basic::kurtosis(&x).unwrap(), 1e-10);
     close(basic::m8a(&shifted).unwrap(), basic::m8a(&x).unwrap(), 1e-9);
 }
 
@@ -182,15 +146,7 @@ proptest! {
 
 /// Mesh tone (amplitude 2 at order 30) with sidebands, second harmonic, and orders 5 and 11.
 fn tones(n: usize) -> Vec<f64> {
-    let lines = [
-        (30.0, 2.0),
-        (29.0, 0.3),
-        (31.0, 0.5),
-        (28.0, 0.05),
-        (60.0, 0.7),
-        (5.0, 0.25),
-        (11.0, 0.15),
-    ];
+    let lines = [(30.0, 2.0), (29.0, 0.3), (31.0, 0.5), (28.0, 0.05), (60.0, 0.7), (5.0, 0.25), (11.0, 0.15)];
     (0..n)
         .map(|i| {
             let theta = TAU * i as f64 / n as f64;
@@ -202,10 +158,7 @@ fn tones(n: usize) -> Vec<f64> {
 #[test]
 fn analytic_gear_indicators_of_known_lines() {
     let x = tones(1024);
-    let analysis = GearAnalyzer::new(1024, &RemovalRule::sidebands(30, 1))
-        .unwrap()
-        .analyze(&x)
-        .unwrap();
+    let analysis = GearAnalyzer::new(1024, &RemovalRule::sidebands(30, 1)).unwrap().analyze(&x).unwrap();
     let value = |i, s| analysis.value(i, s).unwrap();
     use SignalKind::{Average, Difference};
     let sigma = ((4.0 + 0.09 + 0.25 + 0.0025 + 0.49 + 0.0625 + 0.0225) / 2.0_f64).sqrt();
@@ -213,51 +166,25 @@ fn analytic_gear_indicators_of_known_lines() {
     let span = basic::peak_to_peak(&x).unwrap();
     close(value(Indicator::Fm0, Average), span / 2.7, 1e-12);
     close(value(Indicator::SidebandIndex, Average), 0.4, 1e-12);
-    close(
-        value(Indicator::SidebandLevelFactor, Average),
-        0.8 / sigma,
-        1e-12,
-    );
-    close(
-        value(Indicator::SidebandEnergyRatio, Average),
-        0.85 / 2.0,
-        1e-12,
-    );
+    close(value(Indicator::SidebandLevelFactor, Average), 0.8 / sigma, 1e-12);
+    close(value(Indicator::SidebandEnergyRatio, Average), 0.85 / 2.0, 1e-12);
     // The difference keeps orders 5, 11 and 28.
     let left = ((0.0625 + 0.0225 + 0.0025) / 2.0_f64).sqrt();
     close(value(Indicator::Rms, Difference), left, 1e-12);
     let removed = (sigma * sigma - left * left).sqrt();
-    close(
-        value(Indicator::EnergyRatio, Difference),
-        left / removed,
-        1e-12,
-    );
+    close(value(Indicator::EnergyRatio, Difference), left / removed, 1e-12);
 }
 
 #[test]
 fn extreme_difference_of_pure_mesh_has_reasons_not_noise() {
     let x = sine(1024, 30.0, 1.0, 0.2);
-    let analysis = GearAnalyzer::new(1024, &RemovalRule::sidebands(30, 1))
-        .unwrap()
-        .analyze(&x)
-        .unwrap();
+    let analysis = GearAnalyzer::new(1024, &RemovalRule::sidebands(30, 1)).unwrap().analyze(&x).unwrap();
     for indicator in [Indicator::Fm4, Indicator::M8a, Indicator::Kurtosis] {
         let value = analysis.value(indicator, SignalKind::Difference);
-        assert!(
-            matches!(value, Err(HumsError::Undefined { .. })),
-            "{value:?}"
-        );
+        assert!(matches!(value, Err(HumsError::Undefined { .. })), "{value:?}");
     }
-    assert!(matches!(
-        analysis.value(Indicator::Na4, SignalKind::Residual),
-        Err(HumsError::Undefined { .. })
-    ));
-    assert!(
-        analysis
-            .value(Indicator::Rms, SignalKind::Difference)
-            .unwrap()
-            < 1e-14
-    );
+    assert!(matches!(analysis.value(Indicator::Na4, SignalKind::Residual), Err(HumsError::Undefined { .. })));
+    assert!(analysis.value(Indicator::Rms, SignalKind::Difference).unwrap() < 1e-14);
 }
 
 #[test]
@@ -278,17 +205,9 @@ fn analytic_na4_of_growing_records() {
         locked.update(&scaled(s)).unwrap();
     }
     let reference = (1.0 + 1.01_f64.powi(2) + 0.99_f64.powi(2)) / 3.0;
-    close(
-        locked.update(&scaled(2.0)).unwrap(),
-        kurtosis * (4.0 / reference).powi(2),
-        1e-12,
-    );
+    close(locked.update(&scaled(2.0)).unwrap(), kurtosis * (4.0 / reference).powi(2), 1e-12);
     assert!(locked.is_locked());
-    close(
-        locked.update(&scaled(1.0)).unwrap(),
-        kurtosis / reference.powi(2),
-        1e-12,
-    );
+    close(locked.update(&scaled(1.0)).unwrap(), kurtosis / reference.powi(2), 1e-12);
     assert_eq!(locked.records(), 3);
 }
 
@@ -305,8 +224,5 @@ fn invariant_streamed_tables_have_the_same_bits() {
     }
     let mut stream = hums::indicator::StreamingIndicators::new(SignalKind::Raw, 1.0);
     stream.push(&[1.0, 2.0]).unwrap();
-    assert!(matches!(
-        stream.push(&[1.0, f64::NAN]),
-        Err(HumsError::NotFinite { index: 3, .. })
-    ));
+    assert!(matches!(stream.push(&[1.0, f64::NAN]), Err(HumsError::NotFinite { index: 3, .. })));
 }

@@ -43,34 +43,13 @@ fn analytic_layouts_are_found() {
         }
     }
     let one = text("acceleration\n1\n2\n3\n").unwrap();
-    assert_eq!(
-        (one.names, one.channels),
-        (vec!["acceleration".into()], vec![vec![1., 2., 3.]])
-    );
-    let comma = TextOptions {
-        decimal_comma: Some(true),
-        ..TextOptions::default()
-    };
-    assert_eq!(
-        text_with("1,5\n2,5\n", &comma).unwrap().channels,
-        [[1.5, 2.5]]
-    );
-    let skip = TextOptions {
-        header_lines: Some(2),
-        ..TextOptions::default()
-    };
-    assert_eq!(
-        text_with("1,2\n3,4\n5,6\n", &skip).unwrap().channels,
-        [[5.0], [6.0]]
-    );
-    let bar = TextOptions {
-        delimiter: Some(b'|'),
-        ..TextOptions::default()
-    };
-    assert_eq!(
-        text_with("a|b\n1|2\n3|4\n", &bar).unwrap().channels,
-        [[1.0, 3.0], [2.0, 4.0]]
-    );
+    assert_eq!((one.names, one.channels), (vec!["acceleration".into()], vec![vec![1., 2., 3.]]));
+    let comma = TextOptions { decimal_comma: Some(true), ..TextOptions::default() };
+    assert_eq!(text_with("1,5\n2,5\n", &comma).unwrap().channels, [[1.5, 2.5]]);
+    let skip = TextOptions { header_lines: Some(2), ..TextOptions::default() };
+    assert_eq!(text_with("1,2\n3,4\n5,6\n", &skip).unwrap().channels, [[5.0], [6.0]]);
+    let bar = TextOptions { delimiter: Some(b'|'), ..TextOptions::default() };
+    assert_eq!(text_with("a|b\n1|2\n3|4\n", &bar).unwrap().channels, [[1.0, 3.0], [2.0, 4.0]]);
 }
 
 #[test]
@@ -81,58 +60,18 @@ fn extreme_gaps_and_faults_of_text() {
     let quality = hums::signal::inspect(&r.channels[1], 3);
     assert_eq!((quality.gaps, quality.missing), (vec![1..4], 3));
     match text("t,a\n0,1\n1,2\n2,hello\n") {
-        Err(ReadError::Cell {
-            line: 4,
-            column: 2,
-            text,
-        }) => assert_eq!(text, "hello"),
+        Err(ReadError::Cell { line: 4, column: 2, text }) => assert_eq!(text, "hello"),
         other => panic!("{other:?}"),
     }
     // A bad cell in the second line is reported, not taken for a header.
-    assert!(matches!(
-        text("0,1\n1,x\n2,3\n3,4\n"),
-        Err(ReadError::Cell {
-            line: 2,
-            column: 2,
-            ..
-        })
-    ));
-    assert!(matches!(
-        text("0,1\n1,2\n2\n"),
-        Err(ReadError::Row {
-            line: 3,
-            found: 1,
-            expected: 2
-        })
-    ));
-    for bad in [
-        "",
-        "\n\n",
-        "only words\nand more\n",
-        "\u{0}\u{1}\u{2}",
-        "# comment",
-    ] {
-        assert!(
-            matches!(text(bad), Err(ReadError::Format { .. })),
-            "{bad:?}"
-        );
+    assert!(matches!(text("0,1\n1,x\n2,3\n3,4\n"), Err(ReadError::Cell { line: 2, column: 2, .. })));
+    assert!(matches!(text("0,1\n1,2\n2\n"), Err(ReadError::Row { line: 3, found: 1, expected: 2 })));
+    for bad in ["", "\n\n", "only words\nand more\n", "\u{0}\u{1}\u{2}", "# comment"] {
+        assert!(matches!(text(bad), Err(ReadError::Format { .. })), "{bad:?}");
     }
-    assert!(
-        TextReader::new(
-            Cursor::new(b"\xff\xfe1\x00".to_vec()),
-            &TextOptions::default()
-        )
-        .is_err()
-    );
-    let mut reader =
-        TextReader::new(Cursor::new(b"1,2\n3,4\n".to_vec()), &TextOptions::default()).unwrap();
-    assert!(matches!(
-        reader.read_block(5, &mut [Vec::new()]),
-        Err(ReadError::Columns {
-            given: 1,
-            channels: 2
-        })
-    ));
+    assert!(TextReader::new(Cursor::new(b"\xff\xfe1\x00".to_vec()), &TextOptions::default()).is_err());
+    let mut reader = TextReader::new(Cursor::new(b"1,2\n3,4\n".to_vec()), &TextOptions::default()).unwrap();
+    assert!(matches!(reader.read_block(5, &mut [Vec::new()]), Err(ReadError::Columns { given: 1, channels: 2 })));
 }
 
 #[test]
@@ -144,8 +83,7 @@ fn invariant_text_in_blocks_across_buffers() {
         content.push_str(&format!("{i},{v}\n"));
     }
     assert!(content.len() > 2 << 20);
-    let mut reader =
-        TextReader::new(Cursor::new(content.into_bytes()), &TextOptions::default()).unwrap();
+    let mut reader = TextReader::new(Cursor::new(content.into_bytes()), &TextOptions::default()).unwrap();
     let mut columns = vec![Vec::new(), Vec::new()];
     while reader.read_block(777, &mut columns).unwrap() > 0 {}
     assert_eq!(columns[1], x);
@@ -182,11 +120,7 @@ fn wav_bytes(bits: u16, float: bool, frames: &[[f64; 2]]) -> Vec<u8> {
         channels: 2,
         sample_rate: 51_200,
         bits_per_sample: bits,
-        sample_format: if float {
-            hound::SampleFormat::Float
-        } else {
-            hound::SampleFormat::Int
-        },
+        sample_format: if float { hound::SampleFormat::Float } else { hound::SampleFormat::Int },
     };
     let mut bytes = Cursor::new(Vec::new());
     let mut writer = hound::WavWriter::new(&mut bytes, spec).unwrap();
@@ -194,9 +128,7 @@ fn wav_bytes(bits: u16, float: bool, frames: &[[f64; 2]]) -> Vec<u8> {
         if float {
             writer.write_sample(*x as f32).unwrap();
         } else {
-            writer
-                .write_sample((x * f64::from(bits - 1).exp2()) as i32)
-                .unwrap();
+            writer.write_sample((x * f64::from(bits - 1).exp2()) as i32).unwrap();
         }
     }
     writer.finalize().unwrap();
@@ -206,19 +138,8 @@ fn wav_bytes(bits: u16, float: bool, frames: &[[f64; 2]]) -> Vec<u8> {
 #[test]
 fn analytic_wav_of_all_widths() {
     // Exact in 8 bits, hence in all; full scale negative, and 24 bits clipped at both ends.
-    let frames = [
-        [0.0, -1.0],
-        [0.5, 0.25],
-        [-0.125, 0.75],
-        [63.0 / 64.0, -63.0 / 64.0],
-    ];
-    for (bits, float) in [
-        (8, false),
-        (16, false),
-        (24, false),
-        (32, false),
-        (32, true),
-    ] {
+    let frames = [[0.0, -1.0], [0.5, 0.25], [-0.125, 0.75], [63.0 / 64.0, -63.0 / 64.0]];
+    for (bits, float) in [(8, false), (16, false), (24, false), (32, false), (32, true)] {
         let bytes = wav_bytes(bits, float, &frames);
         let mut reader = wav::WavRecording::new(Cursor::new(bytes.clone())).unwrap();
         let mut columns = vec![Vec::new(), Vec::new()];
@@ -240,8 +161,7 @@ fn analytic_wav_of_all_widths() {
 
 fn npy_bytes(descr: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec<u8> {
     let order = if fortran { "True" } else { "False" };
-    let mut header =
-        format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': ({shape}), }}");
+    let mut header = format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': ({shape}), }}");
     while (10 + header.len() + 1) % 64 != 0 {
         header.push(' ');
     }
@@ -255,54 +175,20 @@ fn npy_bytes(descr: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec<u8> {
 
 #[test]
 fn analytic_npy_types_and_orders() {
-    let read = |bytes: Vec<u8>| -> Result<Recording, ReadError> {
-        read_all(npy::open(Cursor::new(bytes))?.as_mut())
-    };
-    let f8: Vec<u8> = [1.0_f64, -2.5, 3.0, 4.0, 5.0, 6.0]
-        .iter()
-        .flat_map(|x| x.to_le_bytes())
-        .collect();
-    assert_eq!(
-        read(npy_bytes("<f8", false, "6,", &f8)).unwrap().channels,
-        [[1.0, -2.5, 3.0, 4.0, 5.0, 6.0]]
-    );
+    let read = |bytes: Vec<u8>| -> Result<Recording, ReadError> { read_all(npy::open(Cursor::new(bytes))?.as_mut()) };
+    let f8: Vec<u8> = [1.0_f64, -2.5, 3.0, 4.0, 5.0, 6.0].iter().flat_map(|x| x.to_le_bytes()).collect();
+    assert_eq!(read(npy_bytes("<f8", false, "6,", &f8)).unwrap().channels, [[1.0, -2.5, 3.0, 4.0, 5.0, 6.0]]);
     let pairs = [vec![1.0, 3.0, 5.0], vec![-2.5, 4.0, 6.0]];
     let halves = [vec![1.0, -2.5, 3.0], vec![4.0, 5.0, 6.0]];
-    assert_eq!(
-        read(npy_bytes("<f8", false, "3, 2", &f8)).unwrap().channels,
-        pairs
-    );
-    assert_eq!(
-        read(npy_bytes("<f8", true, "3, 2", &f8)).unwrap().channels,
-        halves
-    );
-    assert_eq!(
-        read(npy_bytes("<f8", false, "2, 3", &f8)).unwrap().channels,
-        halves
-    );
-    assert_eq!(
-        read(npy_bytes("<f8", true, "2, 3", &f8)).unwrap().channels,
-        pairs
-    );
+    assert_eq!(read(npy_bytes("<f8", false, "3, 2", &f8)).unwrap().channels, pairs);
+    assert_eq!(read(npy_bytes("<f8", true, "3, 2", &f8)).unwrap().channels, halves);
+    assert_eq!(read(npy_bytes("<f8", false, "2, 3", &f8)).unwrap().channels, halves);
+    assert_eq!(read(npy_bytes("<f8", true, "2, 3", &f8)).unwrap().channels, pairs);
     let i2: Vec<u8> = [-2_i16, 300].iter().flat_map(|x| x.to_be_bytes()).collect();
-    assert_eq!(
-        read(npy_bytes(">i2", false, "2,", &i2)).unwrap().channels,
-        [[-2.0, 300.0]]
-    );
-    let f4: Vec<u8> = [0.1_f32, -7.0]
-        .iter()
-        .flat_map(|x| x.to_le_bytes())
-        .collect();
-    assert_eq!(
-        read(npy_bytes("<f4", false, "2,", &f4)).unwrap().channels,
-        [[f64::from(0.1_f32), -7.0]]
-    );
-    assert_eq!(
-        read(npy_bytes("|u1", false, "3,", &[1, 2, 255]))
-            .unwrap()
-            .channels,
-        [[1.0, 2.0, 255.0]]
-    );
+    assert_eq!(read(npy_bytes(">i2", false, "2,", &i2)).unwrap().channels, [[-2.0, 300.0]]);
+    let f4: Vec<u8> = [0.1_f32, -7.0].iter().flat_map(|x| x.to_le_bytes()).collect();
+    assert_eq!(read(npy_bytes("<f4", false, "2,", &f4)).unwrap().channels, [[f64::from(0.1_f32), -7.0]]);
+    assert_eq!(read(npy_bytes("|u1", false, "3,", &[1, 2, 255])).unwrap().channels, [[1.0, 2.0, 255.0]]);
     for bad in [
         npy_bytes("<f8", false, "7,", &f8),
         npy_bytes("<f8", false, "2, 4", &f8),
@@ -326,13 +212,7 @@ fn mat_array(name: &str, rows: i32, columns: i32, values: &[f64]) -> Vec<u8> {
     element(6, &[6, 0, 0, 0, 0, 0, 0, 0]);
     element(5, &[rows.to_le_bytes(), columns.to_le_bytes()].concat());
     element(1, name.as_bytes());
-    element(
-        9,
-        &values
-            .iter()
-            .flat_map(|x| x.to_le_bytes())
-            .collect::<Vec<_>>(),
-    );
+    element(9, &values.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<_>>());
     let mut array = [14_u32.to_le_bytes(), (body.len() as u32).to_le_bytes()].concat();
     array.extend(body);
     array

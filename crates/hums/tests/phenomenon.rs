@@ -12,12 +12,8 @@ use hums::phenomenon::{AmplitudeDensity, ClosedForm, DampedSine, simplified_indi
 use std::f64::consts::PI;
 
 /// 20 % crack, D 4.5.1; micrometres.
-const CRACK_20: DampedSine = DampedSine {
-    amplitude: 2.798,
-    delay: 0.475_303e-3,
-    natural_frequency: 2733.33,
-    damping: 0.039_92,
-};
+const CRACK_20: DampedSine =
+    DampedSine { amplitude: 2.798, delay: 0.475_303e-3, natural_frequency: 2733.33, damping: 0.039_92 };
 /// One pinion turn: 27 mesh cycles at 1800 Hz (D 4.2).
 const TURN: f64 = 27.0 / 1800.0;
 
@@ -32,10 +28,7 @@ fn peer_dissertation_4_5_numbers() {
         assert!((CRACK_20.extremum(i) - printed).abs() <= 0.005, "{i}");
     }
     // Times of the extrema in mesh cycles without delay: 0.161, 0.490, 0.820.
-    let free = DampedSine {
-        delay: 0.0,
-        ..CRACK_20
-    };
+    let free = DampedSine { delay: 0.0, ..CRACK_20 };
     let half = 0.5 / free.damped_frequency();
     for (k, printed) in [(0, 0.161), (1, 0.490), (2, 0.820)] {
         let cycles = (free.time_of_maximum() + f64::from(k) * half) * 1800.0;
@@ -49,10 +42,7 @@ fn peer_dissertation_4_5_numbers() {
     assert_eq!(CRACK_20.half_cycles(TURN), 82);
     let form = CRACK_20.density(82).unwrap().indicators().unwrap();
     assert_eq!(format!("{:.2}", off(form.rms, rms(&y).unwrap())), "0.03");
-    assert_eq!(
-        format!("{:.2}", off(form.fm4, kurtosis(&y).unwrap())),
-        "0.04"
-    );
+    assert_eq!(format!("{:.2}", off(form.fm4, kurtosis(&y).unwrap())), "0.04");
     assert_eq!(format!("{:.2}", off(form.m8a, m8a(&y).unwrap())), "0.14");
 }
 
@@ -93,10 +83,7 @@ fn analytic_closed_forms_match_quadrature_of_the_density() {
     // Midpoint rule with 400 points for sin^p on a quarter: (pi/2/400)^2 p / 24 = 5e-6 at p = 8.
     for n in [1, 2, 3, 10, 81, 82] {
         let delta = 0.251;
-        let form = AmplitudeDensity::new(2.63, delta, n)
-            .unwrap()
-            .indicators()
-            .unwrap();
+        let form = AmplitudeDensity::new(2.63, delta, n).unwrap().indicators().unwrap();
         let numeric = quadrature(2.63, delta, n);
         close(form.rms, numeric.rms, 1e-5);
         close(form.mean, numeric.mean, 1e-5);
@@ -109,11 +96,7 @@ fn analytic_closed_forms_match_quadrature_of_the_density() {
 fn printed(first: f64, delta: f64, n: usize, c: f64) -> (f64, f64) {
     let nf = n as f64;
     let even = |p: f64| (0..n).map(|i| (-p * delta * i as f64).exp()).sum::<f64>();
-    let odd = |p: f64| {
-        (0..n)
-            .map(|i| (-1.0_f64).powi(i as i32) * (-p * delta * i as f64 / 2.0).exp())
-            .sum::<f64>()
-    };
+    let odd = |p: f64| (0..n).map(|i| (-1.0_f64).powi(i as i32) * (-p * delta * i as f64 / 2.0).exp()).sum::<f64>();
     let a = first;
     let mu = 2.0 * a / (nf * PI) * odd(1.0);
     let variance = a * a / (2.0 * nf) * even(1.0) - mu * mu;
@@ -134,21 +117,14 @@ fn printed(first: f64, delta: f64, n: usize, c: f64) -> (f64, f64) {
 #[test]
 fn peer_dissertation_4_13_coefficients() {
     for n in [1, 2, 7, 82] {
-        let form = AmplitudeDensity::new(2.63, 0.251, n)
-            .unwrap()
-            .indicators()
-            .unwrap();
+        let form = AmplitudeDensity::new(2.63, 0.251, n).unwrap().indicators().unwrap();
         let (fm4, m8a) = printed(2.63, 0.251, n, 14.0);
         close(fm4, form.fm4, 1e-9);
         close(m8a, form.m8a, 1e-9);
     }
     // The printed 17 instead of C(8,6)/2 = 14: wrong for few half cycles, invisible for 82.
     let (_, wrong) = printed(2.63, 0.251, 1, 17.0);
-    let right = AmplitudeDensity::new(2.63, 0.251, 1)
-        .unwrap()
-        .indicators()
-        .unwrap()
-        .m8a;
+    let right = AmplitudeDensity::new(2.63, 0.251, 1).unwrap().indicators().unwrap().m8a;
     assert!(wrong / right > 2.0, "{wrong} {right}");
     let (_, wrong) = printed(2.63, 0.251, 82, 17.0);
     let (_, right) = printed(2.63, 0.251, 82, 14.0);
@@ -170,8 +146,7 @@ fn invariant_density_is_a_density() {
             for y in [up, down] {
                 let h = 1e-4 * y;
                 let (low, high) = (y - h, y + h);
-                let share =
-                    f.probability_between_zero_and(high) - f.probability_between_zero_and(low);
+                let share = f.probability_between_zero_and(high) - f.probability_between_zero_and(low);
                 assert!((share / (2.0 * h.abs()) - f.density(y)).abs() <= 1e-5 * f.density(y));
             }
         }
@@ -185,24 +160,14 @@ fn invariant_density_is_a_density() {
 #[test]
 fn peer_density_against_histogram() {
     // D 4.6.1.2: share of time in amplitude bands, from a million samples of the truncated signal.
-    let free = DampedSine {
-        delay: 0.0,
-        ..CRACK_20
-    };
+    let free = DampedSine { delay: 0.0, ..CRACK_20 };
     let n = 82;
     let duration = n as f64 / 2.0 / free.damped_frequency();
     let y = free.samples(1_000_000, 1e6 / duration).unwrap();
     let f = free.density(n).unwrap();
-    for (low, high) in [
-        (0.05, 0.2),
-        (0.2, 0.6),
-        (0.6, 1.2),
-        (-0.3, -0.05),
-        (-1.5, -0.5),
-    ] {
+    for (low, high) in [(0.05, 0.2), (0.2, 0.6), (0.6, 1.2), (-0.3, -0.05), (-1.5, -0.5)] {
         let share = y.iter().filter(|v| (low..high).contains(*v)).count() as f64 / 1e6;
-        let predicted =
-            (f.probability_between_zero_and(high) - f.probability_between_zero_and(low)).abs();
+        let predicted = (f.probability_between_zero_and(high) - f.probability_between_zero_and(low)).abs();
         // The approximation (constant amplitude within a half cycle) is good to about zeta.
         close(predicted, share, 0.04);
     }
@@ -213,10 +178,7 @@ fn analytic_simplified_forms_are_the_limit() {
     // Mean dropped, series summed to infinity: with mean 0 and n large the full forms agree.
     let delta = 0.251;
     let n = 4000;
-    let full = AmplitudeDensity::new(-1.5, delta, n)
-        .unwrap()
-        .indicators()
-        .unwrap();
+    let full = AmplitudeDensity::new(-1.5, delta, n).unwrap().indicators().unwrap();
     let simple = simplified_indicators(-1.5, delta, n as f64).unwrap();
     close(simple.rms, full.rms, 1e-12);
     close(simple.fm4, full.fm4, 2e-4);
@@ -231,21 +193,12 @@ fn analytic_simplified_forms_are_the_limit() {
 fn analytic_fit_recovers_parameters() {
     let rate = 500.0 * 1800.0;
     let y = CRACK_20.samples(13_500, rate).unwrap();
-    let fixed = fit(
-        &y,
-        rate,
-        &FitOptions::amplitude_and_delay(2733.33, 0.039_92),
-    )
-    .unwrap();
+    let fixed = fit(&y, rate, &FitOptions::amplitude_and_delay(2733.33, 0.039_92)).unwrap();
     assert_eq!(fixed.status, FitStatus::Converged);
     close(fixed.model.amplitude, 2.798, 1e-9);
     close(fixed.model.delay, 0.475_303e-3, 1e-9);
     assert!(fixed.residual_rms < 1e-9 && fixed.explained > 1.0 - 1e-12);
-    let free = FitOptions {
-        free_frequency: true,
-        free_damping: true,
-        ..FitOptions::amplitude_and_delay(2650.0, 0.06)
-    };
+    let free = FitOptions { free_frequency: true, free_damping: true, ..FitOptions::amplitude_and_delay(2650.0, 0.06) };
     let found = fit(&y, rate, &free).unwrap();
     assert_eq!(found.status, FitStatus::Converged);
     close(found.model.natural_frequency, 2733.33, 1e-9);
@@ -265,11 +218,7 @@ fn analytic_fit_in_noise_is_at_the_cramer_rao_bound() {
     let errors: Vec<f64> = (0..200)
         .map(|seed| {
             let noise = gaussian(1350, 1000 + seed);
-            let y: Vec<f64> = clean
-                .iter()
-                .zip(noise)
-                .map(|(a, b)| a + sigma * b)
-                .collect();
+            let y: Vec<f64> = clean.iter().zip(noise).map(|(a, b)| a + sigma * b).collect();
             fit(&y, rate, &options).unwrap().model.amplitude - CRACK_20.amplitude
         })
         .collect();
@@ -280,27 +229,11 @@ fn analytic_fit_in_noise_is_at_the_cramer_rao_bound() {
 #[test]
 fn extreme_fit_inputs() {
     let options = FitOptions::amplitude_and_delay(100.0, 0.05);
-    assert!(matches!(
-        fit(&[0.0; 100], 1000.0, &options),
-        Err(HumsError::Undefined { .. })
-    ));
-    assert!(matches!(
-        fit(&[1.0; 3], 1000.0, &options),
-        Err(HumsError::TooShort { .. })
-    ));
+    assert!(matches!(fit(&[0.0; 100], 1000.0, &options), Err(HumsError::Undefined { .. })));
+    assert!(matches!(fit(&[1.0; 3], 1000.0, &options), Err(HumsError::TooShort { .. })));
     assert!(fit(&[f64::NAN; 100], 1000.0, &options).is_err());
     assert!(fit(&[1.0; 100], 150.0, &options).is_err());
-    assert!(
-        fit(
-            &[1.0; 100],
-            1000.0,
-            &FitOptions {
-                damping: 1.0,
-                ..options
-            }
-        )
-        .is_err()
-    );
+    assert!(fit(&[1.0; 100], 1000.0, &FitOptions { damping: 1.0, ..options }).is_err());
     // A constant is not a ringing, but the least-squares answer exists and is finite.
     let constant = fit(&[1.0; 100], 1000.0, &options).unwrap();
     assert!(constant.model.amplitude.is_finite() && constant.explained < 0.9);
@@ -310,18 +243,9 @@ fn extreme_fit_inputs() {
 }
 
 fn three_modes() -> ModalResponse {
-    let mode = |amplitude, phase, natural_frequency, damping| Mode {
-        amplitude,
-        phase,
-        natural_frequency,
-        damping,
-    };
-    ModalResponse::new(vec![
-        mode(1.0, 0.4, 700.0, 0.03),
-        mode(0.6, -1.2, 1240.0, 0.02),
-        mode(0.25, 2.9, 1300.0, 0.015),
-    ])
-    .unwrap()
+    let mode = |amplitude, phase, natural_frequency, damping| Mode { amplitude, phase, natural_frequency, damping };
+    ModalResponse::new(vec![mode(1.0, 0.4, 700.0, 0.03), mode(0.6, -1.2, 1240.0, 0.02), mode(0.25, 2.9, 1300.0, 0.015)])
+        .unwrap()
 }
 
 #[test]
@@ -329,9 +253,7 @@ fn analytic_indicators_of_three_modes() {
     let response = three_modes();
     let (n, duration, delay) = (400_000, 0.05, 0.01);
     // Midpoint samples; the response jumps at the delay, which lies on a cell edge.
-    let y: Vec<f64> = (0..n)
-        .map(|i| response.value((f64::from(i) + 0.5) * duration / f64::from(n) - delay))
-        .collect();
+    let y: Vec<f64> = (0..n).map(|i| response.value((f64::from(i) + 0.5) * duration / f64::from(n) - delay)).collect();
     let form = response.indicators(delay, duration).unwrap();
     close(form.rms, rms(&y).unwrap(), 1e-7);
     close(form.fm4, kurtosis(&y).unwrap(), 1e-7);
@@ -346,9 +268,7 @@ fn analytic_indicators_of_three_modes() {
 #[test]
 fn analytic_modal_fit_without_noise_is_exact() {
     let (rate, wanted) = (10_000.0, three_modes());
-    let y: Vec<f64> = (0..240)
-        .map(|i| wanted.value(f64::from(i) / rate))
-        .collect();
+    let y: Vec<f64> = (0..240).map(|i| wanted.value(f64::from(i) / rate)).collect();
     for (method, tolerance) in [(Method::MatrixPencil, 1e-9), (Method::Prony, 1e-6)] {
         let found = fit_modes(&y, rate, 3, method).unwrap();
         assert_eq!((found.modes.len(), found.discarded), (3, 0));
@@ -368,16 +288,13 @@ fn analytic_modal_fit_without_noise_is_exact() {
 #[test]
 fn peer_matrix_pencil_beats_prony_in_noise() {
     let (rate, wanted) = (10_000.0, three_modes());
-    let clean: Vec<f64> = (0..240)
-        .map(|i| wanted.value(f64::from(i) / rate))
-        .collect();
+    let clean: Vec<f64> = (0..240).map(|i| wanted.value(f64::from(i) / rate)).collect();
     let mut errors = [0.0, 0.0];
     for seed in 0..10 {
         let noise = gaussian(240, seed);
         let y: Vec<f64> = clean.iter().zip(noise).map(|(a, b)| a + 0.01 * b).collect();
         for (error, method) in errors.iter_mut().zip([Method::MatrixPencil, Method::Prony]) {
-            *error += fit_modes(&y, rate, 3, method)
-                .map_or(1.0, |f| (f.modes[0].damping / 0.03 - 1.0).abs() / 10.0);
+            *error += fit_modes(&y, rate, 3, method).map_or(1.0, |f| (f.modes[0].damping / 0.03 - 1.0).abs() / 10.0);
         }
     }
     assert!(errors[0] < 0.01, "{errors:?}");
@@ -386,29 +303,16 @@ fn peer_matrix_pencil_beats_prony_in_noise() {
 
 #[test]
 fn extreme_modal_fit_inputs() {
-    assert!(matches!(
-        fit_modes(&[0.0; 50], 1.0, 2, Method::Prony),
-        Err(HumsError::Undefined { .. })
-    ));
+    assert!(matches!(fit_modes(&[0.0; 50], 1.0, 2, Method::Prony), Err(HumsError::Undefined { .. })));
     assert!(fit_modes(&[1.0; 50], 1.0, 0, Method::Prony).is_err());
     assert!(fit_modes(&[1.0; 10], 1.0, 2, Method::MatrixPencil).is_err());
     assert!(fit_modes(&vec![1.0; 5000], 1.0, 2, Method::MatrixPencil).is_err());
     // A constant does not ring; it is refused or fitted by something finite, never NaN.
     for method in [Method::Prony, Method::MatrixPencil] {
         if let Ok(found) = fit_modes(&[1.0; 50], 1.0, 2, method) {
-            assert!(
-                found
-                    .modes
-                    .iter()
-                    .all(|m| m.amplitude.is_finite() && m.damping > 0.0)
-            );
+            assert!(found.modes.iter().all(|m| m.amplitude.is_finite() && m.damping > 0.0));
         }
     }
     let y: Vec<f64> = three_modes().modes().iter().map(|m| m.value(0.0)).collect();
-    assert!(
-        max_difference(
-            &y,
-            &[0.4_f64.cos(), 0.6 * 1.2_f64.cos(), 0.25 * 2.9_f64.cos()]
-        ) < 1e-15
-    );
+    assert!(max_difference(&y, &[0.4_f64.cos(), 0.6 * 1.2_f64.cos(), 0.25 * 2.9_f64.cos()]) < 1e-15);
 }

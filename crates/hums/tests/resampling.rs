@@ -18,12 +18,7 @@ fn peer_scipy_cubic_spline() {
             .map(|v| v.parse().unwrap())
             .collect()
     };
-    let values = resample(
-        &field("signal"),
-        &field("spline_positions"),
-        Interpolation::CubicSpline,
-    )
-    .unwrap();
+    let values = resample(&field("signal"), &field("spline_positions"), Interpolation::CubicSpline).unwrap();
     assert!(max_difference(&values, &field("spline_values")) < 1e-12);
 }
 
@@ -43,10 +38,7 @@ fn analytic_cubics_are_reproduced() {
     assert!(max_difference(&parabola, &[0.25, 2.25]) < 1e-15);
     let line = resample(&[1.0, 3.0], &[0.25], Interpolation::CubicSpline).unwrap();
     assert!(max_difference(&line, &[1.5]) < 1e-15);
-    assert_eq!(
-        resample(&[7.0], &[0.0], Interpolation::Linear).unwrap(),
-        [7.0]
-    );
+    assert_eq!(resample(&[7.0], &[0.0], Interpolation::Linear).unwrap(), [7.0]);
 }
 
 /// Largest interior error for a tone of `w` rad per sample.
@@ -60,9 +52,7 @@ fn tone_error(w: f64, method: Interpolation) -> f64 {
 
 fn slope(points: &[(f64, f64)]) -> f64 {
     let n = points.len() as f64;
-    let (mx, my) = points.iter().fold((0.0, 0.0), |(a, b), (x, y)| {
-        (a + x.ln() / n, b + y.ln() / n)
-    });
+    let (mx, my) = points.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x.ln() / n, b + y.ln() / n));
     let (num, den) = points.iter().fold((0.0, 0.0), |(a, b), (x, y)| {
         let d = x.ln() - mx;
         (a + d * (y.ln() - my), b + d * d)
@@ -73,10 +63,7 @@ fn slope(points: &[(f64, f64)]) -> f64 {
 #[test]
 fn order_of_linear_and_spline() {
     let ladder = [PI / 8.0, PI / 16.0, PI / 32.0, PI / 64.0];
-    for (method, order) in [
-        (Interpolation::Linear, 2.0),
-        (Interpolation::CubicSpline, 4.0),
-    ] {
+    for (method, order) in [(Interpolation::Linear, 2.0), (Interpolation::CubicSpline, 4.0)] {
         let points: Vec<_> = ladder.iter().map(|&w| (w, tone_error(w, method))).collect();
         let found = slope(&points);
         assert!((found - order).abs() < 0.05, "{method:?}: order {found}");
@@ -94,10 +81,7 @@ fn order_band_limited_decays_exponentially() {
         let bound = 4.0 * 10_f64.powf(-(beta / 0.1102 + 8.7) / 20.0);
         for w in [0.05, 0.3, 0.7, PI / 2.0] {
             let error = tone_error(w, method);
-            assert!(
-                error < bound,
-                "L {half_width}, w {w}: {error:e} > {bound:e}"
-            );
+            assert!(error < bound, "L {half_width}, w {w}: {error:e} > {bound:e}");
         }
     }
     // The default: ripple 1e-6 up to 0.84 Nyquist.
@@ -108,11 +92,7 @@ fn order_band_limited_decays_exponentially() {
 fn invariant_samples_are_reproduced_at_samples() {
     let x = common::gaussian(200, 3);
     let at: Vec<f64> = (60..140).map(f64::from).collect();
-    for method in [
-        Interpolation::Linear,
-        Interpolation::CubicSpline,
-        Interpolation::default(),
-    ] {
+    for method in [Interpolation::Linear, Interpolation::CubicSpline, Interpolation::default()] {
         let y = resample(&x, &at, method).unwrap();
         assert!(max_difference(&y, &x[60..140]) < 1e-13, "{method:?}");
     }
@@ -134,19 +114,14 @@ fn analytic_chirp_becomes_a_tone_in_angle() {
     // Speed doubles over the record: phase = 20 t + 10 t^2 turns over 1 s... order 12 vibration.
     let (rate, order) = (20_000.0, 12.0);
     let phase = |t: f64| 20.0 * t + 10.0 * t * t;
-    let x: Vec<f64> = (0..20_000)
-        .map(|i| (TAU * order * phase(f64::from(i) / rate)).sin())
-        .collect();
+    let x: Vec<f64> = (0..20_000).map(|i| (TAU * order * phase(f64::from(i) / rate)).sin()).collect();
     // Exact times of turns: t = -1 + sqrt(1 + turn / 10).
-    let pulses: Vec<f64> = (0..=30)
-        .map(|k| (1.0 + f64::from(k) / 10.0).sqrt() - 1.0)
-        .collect();
+    let pulses: Vec<f64> = (0..=30).map(|k| (1.0 + f64::from(k) / 10.0).sqrt() - 1.0).collect();
     let shaft = Shaft::from_pulses(&pulses, 1.0).unwrap();
     let angle = to_angle(&x, rate, &shaft, 1024, Interpolation::default()).unwrap();
     assert_eq!(angle.per_turn, 1024);
-    let expected: Vec<f64> = (0..angle.samples.len())
-        .map(|k| (TAU * order * (angle.first_turn + k as f64 / 1024.0)).sin())
-        .collect();
+    let expected: Vec<f64> =
+        (0..angle.samples.len()).map(|k| (TAU * order * (angle.first_turn + k as f64 / 1024.0)).sin()).collect();
     // The spline through 31 exact pulses places angles to 1e-6 turns at its worst end interval.
     assert!(angle.samples.len() > 28 * 1024);
     assert!(max_difference(&angle.samples, &expected) < 5e-3);
@@ -158,32 +133,17 @@ fn analytic_chirp_becomes_a_tone_in_angle() {
 #[test]
 fn extreme_positions_and_parameters() {
     let x = [0.0, 1.0, 2.0];
-    assert!(matches!(
-        resample(&x, &[2.5], Interpolation::Linear),
-        Err(HumsError::Parameter { .. })
-    ));
+    assert!(matches!(resample(&x, &[2.5], Interpolation::Linear), Err(HumsError::Parameter { .. })));
     assert!(resample(&x, &[f64::NAN], Interpolation::Linear).is_err());
     assert!(resample(&[], &[], Interpolation::Linear).is_err());
     assert!(resample(&[f64::NAN, 1.0], &[0.5], Interpolation::Linear).is_err());
     for method in [
-        Interpolation::BandLimited {
-            half_width: 1,
-            beta: 8.0,
-        },
-        Interpolation::BandLimited {
-            half_width: 8,
-            beta: 17.0,
-        },
-        Interpolation::BandLimited {
-            half_width: 8,
-            beta: f64::NAN,
-        },
+        Interpolation::BandLimited { half_width: 1, beta: 8.0 },
+        Interpolation::BandLimited { half_width: 8, beta: 17.0 },
+        Interpolation::BandLimited { half_width: 8, beta: f64::NAN },
     ] {
         assert!(resample(&x, &[1.0], method).is_err());
     }
     let late = Shaft::from_pulses(&[50.0, 51.0], 1.0).unwrap();
-    assert!(matches!(
-        to_angle(&x, 1.0, &late, 64, Interpolation::Linear),
-        Err(HumsError::Undefined { .. })
-    ));
+    assert!(matches!(to_angle(&x, 1.0, &late, 64, Interpolation::Linear), Err(HumsError::Undefined { .. })));
 }

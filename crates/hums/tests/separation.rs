@@ -44,10 +44,7 @@ fn records(
 
 fn stage() -> PlanetaryStage {
     // The dissertation's output stage has 99 ring, 35 planet, 27 sun teeth (D 5.1).
-    PlanetaryStage {
-        samples_per_mesh: 16,
-        ..PlanetaryStage::new(99, 35, 27, 3)
-    }
+    PlanetaryStage { samples_per_mesh: 16, ..PlanetaryStage::new(99, 35, 27, 3) }
 }
 
 /// Different tooth-by-tooth signatures for each planet.
@@ -62,19 +59,13 @@ fn signature(k: usize, at: usize) -> f64 {
 fn analytic_planets_are_separated_exactly() {
     for window in [PassWindow::Rectangular, PassWindow::Hann, PassWindow::Tukey] {
         let stage = PlanetaryStage { window, ..stage() };
-        assert_eq!(
-            (stage.planet_reset_turns(), stage.sun_reset_turns()),
-            (35, 3)
-        );
+        assert_eq!((stage.planet_reset_turns(), stage.sun_reset_turns()), (35, 3));
         let x = records(&stage, 37, signature, |_| 0.0);
         for k in 0..3 {
             let found = stage.planet(&[&x[0]], 0.0, k).unwrap();
             let expected: Vec<f64> = (0..35 * 16).map(|at| signature(k, at)).collect();
             assert!(found.passes >= 35);
-            assert!(
-                max_difference(&found.samples, &expected) < 1e-12,
-                "{window:?} {k}"
-            );
+            assert!(max_difference(&found.samples, &expected) < 1e-12, "{window:?} {k}");
         }
     }
 }
@@ -99,17 +90,10 @@ fn analytic_sun_is_separated_exactly() {
 #[test]
 fn analytic_sensors_fill_the_turn_faster() {
     // Nine teeth of hearing a pass: 35 planet teeth need several passes; seven sensors share them.
-    let mut stage = PlanetaryStage {
-        window_teeth: 8.0,
-        ..stage()
-    };
+    let mut stage = PlanetaryStage { window_teeth: 8.0, ..stage() };
     let x = records(&stage, 6, signature, |_| 0.0);
     assert!(matches!(
-        PlanetaryStage {
-            window_teeth: 2.0,
-            ..stage.clone()
-        }
-        .planet(&[&x[0]], 0.0, 1),
+        PlanetaryStage { window_teeth: 2.0, ..stage.clone() }.planet(&[&x[0]], 0.0, 1),
         Err(HumsError::Undefined { .. })
     ));
     stage.sensor_angles = (0..7).map(|i| f64::from(i) * 11.0 / 99.0).collect();
@@ -137,12 +121,7 @@ fn invariant_start_of_the_record_and_noise() {
     }
     let noisy = stage.planet(&[&x], 0.0, 2).unwrap();
     assert!(noisy.skipped <= 1);
-    let errors: Vec<f64> = noisy
-        .samples
-        .iter()
-        .zip(&expected)
-        .map(|(a, b)| a - b)
-        .collect();
+    let errors: Vec<f64> = noisy.samples.iter().zip(&expected).map(|(a, b)| a - b).collect();
     let rms = hums::indicator::basic::rms(&errors).unwrap();
     // Three passes at every tooth, with about 5 overlapping windows of mean square 3/8.
     assert!(rms < 0.1 / 3.0_f64.sqrt(), "{rms}");
@@ -156,22 +135,10 @@ fn extreme_parameters() {
     assert!(good.planet(&[&x], f64::NAN, 0).is_err());
     assert!(good.planet(&[&[]], 0.0, 0).is_err());
     for bad in [
-        PlanetaryStage {
-            ring_teeth: 0,
-            ..good.clone()
-        },
-        PlanetaryStage {
-            samples_per_mesh: 1,
-            ..good.clone()
-        },
-        PlanetaryStage {
-            window_teeth: 0.5,
-            ..good.clone()
-        },
-        PlanetaryStage {
-            planet_angles: vec![f64::NAN],
-            ..good.clone()
-        },
+        PlanetaryStage { ring_teeth: 0, ..good.clone() },
+        PlanetaryStage { samples_per_mesh: 1, ..good.clone() },
+        PlanetaryStage { window_teeth: 0.5, ..good.clone() },
+        PlanetaryStage { planet_angles: vec![f64::NAN], ..good.clone() },
     ] {
         assert!(bad.planet(&[&x], 0.0, 0).is_err());
     }

@@ -14,10 +14,7 @@ fn analytic_lines_are_exact_on_the_grid() {
         let spectrum = Spectrum::of(&x, window).unwrap();
         close(spectrum.amplitude(37).unwrap(), 1.7, 1e-12);
         assert!(spectrum.amplitude(60).unwrap() < 1e-12);
-        assert!(matches!(
-            spectrum.amplitude(501),
-            Err(HumsError::OrderNotResolved { highest: 500, .. })
-        ));
+        assert!(matches!(spectrum.amplitude(501), Err(HumsError::OrderNotResolved { highest: 500, .. })));
     }
 }
 
@@ -68,9 +65,7 @@ fn analytic_white_noise_density() {
 fn analytic_envelope_of_modulated_tone() {
     let n = 2048;
     let modulation = |i: usize| 1.0 + 0.4 * (TAU * 3.0 * i as f64 / n as f64).cos();
-    let x: Vec<f64> = (0..n)
-        .map(|i| modulation(i) * (TAU * 50.0 * i as f64 / n as f64).cos())
-        .collect();
+    let x: Vec<f64> = (0..n).map(|i| modulation(i) * (TAU * 50.0 * i as f64 / n as f64).cos()).collect();
     let expected: Vec<f64> = (0..n).map(modulation).collect();
     assert!(max_difference(&envelope(&x).unwrap(), &expected) < 1e-12);
     let spectrum = envelope_spectrum(&x).unwrap();
@@ -85,9 +80,8 @@ fn analytic_demodulation_recovers_amplitude_and_phase() {
     let theta = |i: usize| TAU * i as f64 / n as f64;
     let amplitude = |i: usize| 2.0 + 0.5 * (3.0 * theta(i)).sin();
     let phase = |i: usize| 0.7 + 0.2 * (2.0 * theta(i)).sin();
-    let x: Vec<f64> = (0..n)
-        .map(|i| amplitude(i) * (60.0 * theta(i) + phase(i)).cos() + 3.0 * (120.0 * theta(i)).cos())
-        .collect();
+    let x: Vec<f64> =
+        (0..n).map(|i| amplitude(i) * (60.0 * theta(i) + phase(i)).cos() + 3.0 * (120.0 * theta(i)).cos()).collect();
     let d = demodulate(&x, 60, 25).unwrap();
     let a: Vec<f64> = (0..n).map(amplitude).collect();
     let p: Vec<f64> = (0..n).map(phase).collect();
@@ -95,27 +89,14 @@ fn analytic_demodulation_recovers_amplitude_and_phase() {
     assert!(max_difference(&d.phase, &p) < 1e-11);
     // The second harmonic is outside the band.
     let rest: Vec<f64> = x.iter().zip(&d.band).map(|(x, b)| x - b).collect();
-    close(
-        Spectrum::of(&rest, Window::Rectangular)
-            .unwrap()
-            .amplitude(120)
-            .unwrap(),
-        3.0,
-        1e-12,
-    );
+    close(Spectrum::of(&rest, Window::Rectangular).unwrap().amplitude(120).unwrap(), 3.0, 1e-12);
 }
 
 #[test]
 fn extreme_bands_are_checked() {
     let x = sine(128, 20.0, 1.0, 0.0);
-    assert!(matches!(
-        demodulate(&x, 20, 20),
-        Err(HumsError::Parameter { .. })
-    ));
-    assert!(matches!(
-        demodulate(&x, 50, 20),
-        Err(HumsError::OrderNotResolved { .. })
-    ));
+    assert!(matches!(demodulate(&x, 20, 20), Err(HumsError::Parameter { .. })));
+    assert!(matches!(demodulate(&x, 50, 20), Err(HumsError::OrderNotResolved { .. })));
     assert!(welch(&x, 0.0, 64, Window::Hann).is_err());
     assert!(welch(&x, 1.0, 256, Window::Hann).is_err());
     assert!(welch(&x, 1.0, 1, Window::Hann).is_err());

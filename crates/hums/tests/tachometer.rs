@@ -11,10 +11,7 @@ fn channel(times: &[f64], rate: f64, samples: usize) -> Vec<f64> {
     (0..samples)
         .map(|i| {
             let t = i as f64 / rate;
-            let height: f64 = times
-                .iter()
-                .map(|p| ramp(t - p) - ramp(t - p - 20.0 / rate))
-                .sum();
+            let height: f64 = times.iter().map(|p| ramp(t - p) - ramp(t - p - 20.0 / rate)).sum();
             5.0 * height - 0.3
         })
         .collect()
@@ -40,10 +37,7 @@ fn analytic_pulse_times_between_samples() {
     for (f, e) in found.iter().zip(&exact) {
         assert!((f - e).abs() < 1e-12, "{f} {e}");
     }
-    let falling = PulseOptions {
-        edge: Edge::Falling,
-        ..PulseOptions::default()
-    };
+    let falling = PulseOptions { edge: Edge::Falling, ..PulseOptions::default() };
     let down = pulse_times(&x, 2000.0, &falling).unwrap();
     assert!((down[3] - exact[3] - 0.01).abs() < 1e-12);
 }
@@ -59,15 +53,9 @@ fn extreme_noise_and_gaps_in_the_channel() {
     let found = pulse_times(&x, 2000.0, &PulseOptions::default()).unwrap();
     assert_eq!(found.len(), 40);
     for bad in [vec![1.0; 50], vec![f64::NAN; 50]] {
-        assert!(matches!(
-            pulse_times(&bad, 1.0, &PulseOptions::default()),
-            Err(HumsError::Tachometer { .. })
-        ));
+        assert!(matches!(pulse_times(&bad, 1.0, &PulseOptions::default()), Err(HumsError::Tachometer { .. })));
     }
-    let high = PulseOptions {
-        level: Some(100.0),
-        ..PulseOptions::default()
-    };
+    let high = PulseOptions { level: Some(100.0), ..PulseOptions::default() };
     assert!(pulse_times(&x, 2000.0, &high).is_err());
 }
 
@@ -91,11 +79,7 @@ fn extreme_missing_and_double_pulses_at_varying_speed() {
     assert_eq!(shaft.turn_range(), (0.0, 40.0));
     for turn in [6.9, 7.3, 20.5, 32.5, 33.1] {
         let t = shaft.time_at(turn).unwrap();
-        assert!(
-            (t - slowing(turn)).abs() < 2e-5,
-            "{turn}: {}",
-            t - slowing(turn)
-        );
+        assert!((t - slowing(turn)).abs() < 2e-5, "{turn}: {}", t - slowing(turn));
     }
     let (low, high) = shaft.speed_range();
     assert!(low > 4.9 && low < 5.2 && high > 9.8 && high < 10.1);
@@ -122,13 +106,7 @@ fn extreme_hopeless_pulses_are_refused() {
         })
         .collect();
     assert!(matches!(repair(&chaos), Err(HumsError::Tachometer { .. })));
-    for bad in [
-        vec![],
-        vec![1.0],
-        vec![1.0, 1.0],
-        vec![2.0, 1.0],
-        vec![0.0, f64::NAN],
-    ] {
+    for bad in [vec![], vec![1.0], vec![1.0, 1.0], vec![2.0, 1.0], vec![0.0, f64::NAN]] {
         assert!(matches!(repair(&bad), Err(HumsError::Tachometer { .. })));
         assert!(Shaft::from_pulses(&bad, 1.0).is_err());
     }
@@ -165,22 +143,10 @@ fn invariant_time_and_turn_are_inverse() {
         let back = shaft.turn_at(shaft.time_at(turn).unwrap()).unwrap();
         assert!((back - turn).abs() < 1e-12, "{turn}");
     }
-    close(
-        shaft.speed_at(20.0).unwrap(),
-        (100.0 - 4.0 * 0.468_75 * 20.0_f64).sqrt(),
-        1e-4,
-    );
+    close(shaft.speed_at(20.0).unwrap(), (100.0 - 4.0 * 0.468_75 * 20.0_f64).sqrt(), 1e-4);
     let planet = shaft.geared(2.5).unwrap();
-    close(
-        planet.time_at(50.0).unwrap(),
-        shaft.time_at(20.0).unwrap(),
-        1e-15,
-    );
-    close(
-        planet.speed_at(50.0).unwrap(),
-        2.5 * shaft.speed_at(20.0).unwrap(),
-        1e-12,
-    );
+    close(planet.time_at(50.0).unwrap(), shaft.time_at(20.0).unwrap(), 1e-15);
+    close(planet.speed_at(50.0).unwrap(), 2.5 * shaft.speed_at(20.0).unwrap(), 1e-12);
     assert_eq!(shaft.time_at(-0.1), None);
     assert_eq!(shaft.time_at(f64::NAN), None);
     assert_eq!(shaft.turn_at(1e9), None);

@@ -21,10 +21,7 @@ fn field(name: &str) -> Vec<f64> {
 #[test]
 fn peer_numpy_quantiles_and_mann_whitney() {
     let x = field("signal");
-    for (share, expected) in [0.0, 0.05, 0.5, 0.9, 0.999, 1.0]
-        .iter()
-        .zip(field("quantiles"))
-    {
+    for (share, expected) in [0.0, 0.05, 0.5, 0.9, 0.999, 1.0].iter().zip(field("quantiles")) {
         close(quantile(&x, *share).unwrap(), expected, 1e-14);
     }
     let damaged: Vec<f64> = x[200..400].iter().map(|v| v + 0.5).collect();
@@ -37,36 +34,17 @@ fn analytic_small_roc() {
     let roc = Roc::new(&[1.0, 2.0, 3.0], &[2.0, 4.0]).unwrap();
     // Pairs: 2 beats 1, ties 2, loses to 3; 4 beats all: 4.5 of 6.
     close(roc.area, 0.75, 1e-15);
-    let rates: Vec<_> = roc
-        .points
-        .iter()
-        .map(|p| (p.false_alarm_rate, p.detection_rate))
-        .collect();
+    let rates: Vec<_> = roc.points.iter().map(|p| (p.false_alarm_rate, p.detection_rate)).collect();
     let third = 1.0 / 3.0;
-    assert_eq!(
-        rates,
-        [
-            (0.0, 0.0),
-            (0.0, 0.5),
-            (third, 0.5),
-            (2.0 * third, 1.0),
-            (1.0, 1.0)
-        ]
-    );
+    assert_eq!(rates, [(0.0, 0.0), (0.0, 0.5), (third, 0.5), (2.0 * third, 1.0), (1.0, 1.0)]);
     // Trapezoids under the points give the same area.
-    let area: f64 = rates
-        .windows(2)
-        .map(|w| (w[1].0 - w[0].0) * (w[0].1 + w[1].1) / 2.0)
-        .sum();
+    let area: f64 = rates.windows(2).map(|w| (w[1].0 - w[0].0) * (w[0].1 + w[1].1) / 2.0).sum();
     close(area, roc.area, 1e-15);
     // Every point's rates are what its threshold gives.
     for p in &roc.points {
         let d = Rate::above(&[2.0, 4.0], p.threshold).unwrap();
         let h = Rate::above(&[1.0, 2.0, 3.0], p.threshold).unwrap();
-        assert_eq!(
-            (h.value(), d.value()),
-            (p.false_alarm_rate, p.detection_rate)
-        );
+        assert_eq!((h.value(), d.value()), (p.false_alarm_rate, p.detection_rate));
     }
     assert_eq!(roc.at_false_alarm_rate(0.4).detection_rate, 0.5);
     assert_eq!(roc.at_false_alarm_rate(0.7).detection_rate, 1.0);
@@ -93,19 +71,11 @@ fn analytic_false_alarms_of_k_sigma() {
         assert!((rate.value() - expected).abs() < scatter, "{rate:?}");
         assert!(rate.low < rate.value() && rate.value() < rate.high);
     }
-    close(
-        mean_plus_k_sigma(&[1.0, 2.0, 3.0], 2.0).unwrap(),
-        4.0,
-        1e-14,
-    );
+    close(mean_plus_k_sigma(&[1.0, 2.0, 3.0], 2.0).unwrap(), 4.0, 1e-14);
     // Wilson's interval for 0 of 10: upper end z^2 / (n + z^2).
     let none = Rate::above(&[0.0; 10], 1.0).unwrap();
     assert_eq!(none.low, 0.0);
-    close(
-        none.high,
-        3.841_458_820_694_124 / 13.841_458_820_694_124,
-        1e-12,
-    );
+    close(none.high, 3.841_458_820_694_124 / 13.841_458_820_694_124, 1e-12);
 }
 
 #[test]
@@ -114,45 +84,23 @@ fn analytic_gaussian_scatter_of_standardised_moments() {
     close(gaussian_standard_error(6, 6120).unwrap(), 1.0, 1e-15);
     close(gaussian_standard_error(8, 1_663_200).unwrap(), 1.0, 1e-15);
     type Moment = fn(&[f64]) -> hums::Result<f64>;
-    let cases: [(usize, f64, Moment); 4] = [
-        (3, 0.0, skewness),
-        (4, 3.0, kurtosis),
-        (6, 15.0, m6a),
-        (8, 105.0, m8a),
-    ];
+    let cases: [(usize, f64, Moment); 4] = [(3, 0.0, skewness), (4, 3.0, kurtosis), (6, 15.0, m6a), (8, 105.0, m8a)];
     let n = 20_000;
     for (order, nominal, of) in cases {
-        let spread: f64 = (0..150)
-            .map(|seed| (of(&gaussian(n, 500 + seed)).unwrap() - nominal).powi(2))
-            .sum::<f64>()
-            / 150.0;
+        let spread: f64 =
+            (0..150).map(|seed| (of(&gaussian(n, 500 + seed)).unwrap() - nominal).powi(2)).sum::<f64>() / 150.0;
         // 150 runs: 6 % for a normal scatter; M8A's is skewed.
-        close(
-            spread.sqrt(),
-            gaussian_standard_error(order, n).unwrap(),
-            0.3,
-        );
+        close(spread.sqrt(), gaussian_standard_error(order, n).unwrap(), 0.3);
     }
 }
 
 #[test]
 fn analytic_detection_curve_and_alarms() {
-    let sets = [
-        vec![1.0, 1.2, 0.9, 1.1],
-        vec![1.0, 2.0, 3.0, 1.1],
-        vec![3.0, 4.0, 5.0, 6.0],
-    ];
+    let sets = [vec![1.0, 1.2, 0.9, 1.1], vec![1.0, 2.0, 3.0, 1.1], vec![3.0, 4.0, 5.0, 6.0]];
     let curve = detection_curve(&sets, 1.5).unwrap();
-    assert_eq!(
-        curve.iter().map(Rate::value).collect::<Vec<_>>(),
-        [0.0, 0.5, 1.0]
-    );
+    assert_eq!(curve.iter().map(Rate::value).collect::<Vec<_>>(), [0.0, 0.5, 1.0]);
     let values = [1.0, 5.0, 1.0, 5.0, 5.0, 1.0, 5.0, 1.0, 1.0].map(Some);
-    let rule = AlarmRule {
-        threshold: 3.0,
-        hits: 2,
-        window: 3,
-    };
+    let rule = AlarmRule { threshold: 3.0, hits: 2, window: 3 };
     assert_eq!(alarms(&values, &rule).unwrap(), vec![3..7]);
     let mut missing = values.to_vec();
     missing.insert(4, None);
@@ -163,10 +111,7 @@ fn analytic_detection_curve_and_alarms() {
 
 #[test]
 fn extreme_sets() {
-    assert!(matches!(
-        quantile(&[], 0.5),
-        Err(HumsError::TooShort { .. })
-    ));
+    assert!(matches!(quantile(&[], 0.5), Err(HumsError::TooShort { .. })));
     assert!(quantile(&[1.0], 1.5).is_err());
     assert!(quantile(&[1.0, f64::NAN], 0.5).is_err());
     assert_eq!(quantile(&[7.0], 0.3).unwrap(), 7.0);
@@ -177,15 +122,5 @@ fn extreme_sets() {
     assert!(Roc::new(&[], &[1.0]).is_err());
     assert!(gaussian_standard_error(5, 10).is_err());
     assert!(gaussian_standard_error(4, 0).is_err());
-    assert!(
-        alarms(
-            &[],
-            &AlarmRule {
-                threshold: 1.0,
-                hits: 0,
-                window: 3
-            }
-        )
-        .is_err()
-    );
+    assert!(alarms(&[], &AlarmRule { threshold: 1.0, hits: 0, window: 3 }).is_err());
 }

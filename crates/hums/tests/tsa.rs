@@ -26,20 +26,9 @@ fn record(order: f64, samples: usize) -> Vec<f64> {
 #[test]
 fn analytic_comb_filter_predicts_what_is_left() {
     let n = 41 * 1024;
-    for (order, blocks) in [
-        (10.37, 8),
-        (10.37, 32),
-        (3.5, 16),
-        (3.5, 7),
-        (100.01, 20),
-        (6.25, 4),
-    ] {
+    for (order, blocks) in [(10.37, 8), (10.37, 32), (3.5, 16), (3.5, 7), (100.01, 20), (6.25, 4)] {
         for interpolation in [Interpolation::default(), Interpolation::CubicSpline] {
-            let options = TsaOptions {
-                max_blocks: Some(blocks),
-                interpolation,
-                ..TsaOptions::per_turn(2048)
-            };
+            let options = TsaOptions { max_blocks: Some(blocks), interpolation, ..TsaOptions::per_turn(2048) };
             let shaft = Shaft::constant(SPEED, n, RATE).unwrap();
             let left = average(&record(order, n), RATE, &shaft, &options).unwrap();
             assert_eq!(left.blocks, blocks);
@@ -54,10 +43,7 @@ fn analytic_comb_filter_predicts_what_is_left() {
             let rest = max_difference(&left.samples, &wanted);
             let gain = comb_gain(order, blocks);
             // Spline error of order 100 at 1024 samples a turn: below 5e-4.
-            assert!(
-                (rest - gain).abs() < 5e-4 + 0.013 * gain,
-                "order {order}, N {blocks}: {rest} vs {gain}"
-            );
+            assert!((rest - gain).abs() < 5e-4 + 0.013 * gain, "order {order}, N {blocks}: {rest} vs {gain}");
         }
     }
 }
@@ -90,17 +76,12 @@ fn analytic_speed_varying_by_half() {
     let turn = |t: f64| 10.0 * t - a * t * t;
     let time = |turn: f64| (10.0 - (100.0 - 4.0 * a * turn).sqrt()) / (2.0 * a);
     let n = (time(39.99) * RATE) as usize;
-    let x: Vec<f64> = (0..n)
-        .map(|i| (27.0 * TAU * turn(i as f64 / RATE)).sin())
-        .collect();
+    let x: Vec<f64> = (0..n).map(|i| (27.0 * TAU * turn(i as f64 / RATE)).sin()).collect();
     let pulses: Vec<f64> = (0..400).map(|k| time(f64::from(k) / 10.0)).collect();
     let shaft = Shaft::from_pulses(&pulses, 10.0).unwrap();
     let tsa = average(&x, RATE, &shaft, &TsaOptions::per_turn(4096)).unwrap();
     assert!(tsa.blocks >= 38);
-    let amplitude = Spectrum::of(&tsa.samples, Window::Rectangular)
-        .unwrap()
-        .amplitude(27)
-        .unwrap();
+    let amplitude = Spectrum::of(&tsa.samples, Window::Rectangular).unwrap().amplitude(27).unwrap();
     close(amplitude, 1.0, 1e-5);
     assert!(tsa.removed_rms() < 1e-4, "{}", tsa.removed_rms());
     // Constant speed assumed: the order smears.
@@ -116,9 +97,7 @@ fn extreme_faulty_tachometer_channel_end_to_end() {
     let turn = |t: f64| 10.0 * t - a * t * t;
     let time = |turn: f64| (10.0 - (100.0 - 4.0 * a * turn).sqrt()) / (2.0 * a);
     let n = (time(39.9) * RATE) as usize;
-    let x: Vec<f64> = (0..n)
-        .map(|i| (27.0 * TAU * turn(i as f64 / RATE)).sin())
-        .collect();
+    let x: Vec<f64> = (0..n).map(|i| (27.0 * TAU * turn(i as f64 / RATE)).sin()).collect();
     // Pulses are parabolas a fifth of the pulse pitch wide in angle, as a slot in a disc makes them.
     let mut centres: Vec<f64> = (0..199).map(|k| f64::from(k) + 0.5).collect();
     for lost in [150, 99, 40] {
@@ -133,14 +112,10 @@ fn extreme_faulty_tachometer_channel_end_to_end() {
         })
         .collect();
     channel[5000..5003].fill(f64::NAN);
-    let (shaft, pulses) =
-        Shaft::from_channel(&channel, RATE, 5.0, &PulseOptions::default()).unwrap();
+    let (shaft, pulses) = Shaft::from_channel(&channel, RATE, 5.0, &PulseOptions::default()).unwrap();
     assert_eq!((pulses.missing, pulses.extra), (3, 2));
     let tsa = average(&x, RATE, &shaft, &TsaOptions::per_turn(4096)).unwrap();
-    let amplitude = Spectrum::of(&tsa.samples, Window::Rectangular)
-        .unwrap()
-        .amplitude(27)
-        .unwrap();
+    let amplitude = Spectrum::of(&tsa.samples, Window::Rectangular).unwrap().amplitude(27).unwrap();
     // Crossings by linear interpolation on a curved flank: a thousandth of a sample, 1e-4 rad of mesh.
     close(amplitude, 1.0, 1e-3);
     assert!(tsa.removed_rms() < 0.02, "{}", tsa.removed_rms());
@@ -151,25 +126,14 @@ fn invariant_streaming_gives_the_same_bits() {
     let n = 30 * 1024 + 17;
     let x = gaussian(n, 5);
     let pulses: Vec<f64> = (0..30).map(|k| 0.013 + 0.0997 * f64::from(k)).collect();
-    for interpolation in [
-        Interpolation::Linear,
-        Interpolation::CubicSpline,
-        Interpolation::default(),
-    ] {
+    for interpolation in [Interpolation::Linear, Interpolation::CubicSpline, Interpolation::default()] {
         let shaft = Shaft::from_pulses(&pulses, 1.0).unwrap();
-        let options = TsaOptions {
-            interpolation,
-            ..TsaOptions::per_turn(1024)
-        };
+        let options = TsaOptions { interpolation, ..TsaOptions::per_turn(1024) };
         let whole = average(&x, RATE, &shaft, &options).unwrap();
         for piece in [1000, 4096, 7, n] {
             let mut averager = Averager::new(RATE, shaft.clone(), options.clone()).unwrap();
             x.chunks(piece).for_each(|part| averager.push(part));
-            assert_eq!(
-                averager.finish().unwrap(),
-                whole,
-                "{interpolation:?} {piece}"
-            );
+            assert_eq!(averager.finish().unwrap(), whole, "{interpolation:?} {piece}");
         }
     }
 }
@@ -179,20 +143,14 @@ fn extreme_gaps_leave_blocks_out() {
     let n = 21 * 1024;
     let shaft = Shaft::constant(SPEED, n, RATE).unwrap();
     let mut x = record(27.0, n);
-    let options = TsaOptions {
-        interpolation: Interpolation::Linear,
-        ..TsaOptions::per_turn(1024)
-    };
+    let options = TsaOptions { interpolation: Interpolation::Linear, ..TsaOptions::per_turn(1024) };
     let clean = average(&x, RATE, &shaft, &options).unwrap();
     x[5 * 1024 + 100..5 * 1024 + 140].fill(f64::NAN);
     let gap = average(&x, RATE, &shaft, &options).unwrap();
     assert_eq!((gap.blocks, gap.skipped), (clean.blocks - 1, 1));
     assert!(max_difference(&gap.samples, &clean.samples) < 1e-12);
     x.fill(f64::NAN);
-    assert!(matches!(
-        average(&x, RATE, &shaft, &options),
-        Err(HumsError::Undefined { .. })
-    ));
+    assert!(matches!(average(&x, RATE, &shaft, &options), Err(HumsError::Undefined { .. })));
     assert!(average(&[], RATE, &shaft, &options).is_err());
     assert!(average(&[1.0], RATE, &shaft, &options).is_err());
     assert!(average_periods(&[1.0; 10], 0, None).is_err());
@@ -207,11 +165,7 @@ fn peer_dissertation_a4_repetition_every_nine_planet_passes() {
     let per_pass = 64;
     let pattern = gaussian(9 * per_pass, 77);
     let record: Vec<f64> = (0..10).flat_map(|_| pattern.iter().copied()).collect();
-    let of = |blocks| {
-        average_periods(&record, per_pass, Some(blocks))
-            .unwrap()
-            .samples
-    };
+    let of = |blocks| average_periods(&record, per_pass, Some(blocks)).unwrap().samples;
     let nine = of(9);
     for blocks in [18, 27, 81] {
         assert!(max_difference(&of(blocks), &nine) < 1e-14);

@@ -48,7 +48,7 @@ pub fn run() -> anyhow::Result<()> {
     );
     let mut worst = 0.0_f64;
     for (name, mesh_cycles) in SCENES {
-        let case = case::load(&root.join("configs").join(name))?;
+        let case = case::load_spur_pair(&root.join("configs").join(name))?;
         for &mesh_cycle in mesh_cycles {
             let (ours, position) = gearwright_answer(&case, mesh_cycle)?;
             let peers = LADDER

@@ -77,7 +77,7 @@ fn scenes() -> anyhow::Result<Vec<Scene>> {
         ("nonunity-pair.toml", "statics-solid", "nonunity pair, 3-D"),
         ("nonunity-pair-modified.toml", "statics-modified", "nonunity pair with relief and crown, 3-D"),
     ] {
-        let case = case::load(&configs.join(file))?;
+        let case = case::load_spur_pair(&configs.join(file))?;
         let mut reference = case.options;
         let solid = matches!(case.options.face, FaceModel::Solid { .. });
         for member in [&mut reference.pinion, &mut reference.wheel] {

@@ -4,12 +4,34 @@ use serde_json::Value as Json;
 
 use super::document::{Node, Value};
 use super::fault::Fault;
-use super::reference::{resolve, schema};
+use super::kind::{self, CaseKind};
+use super::reference::resolve;
+
+/// The kind of a document.
+///
+/// # Errors
+/// The fault of a missing or unknown kind.
+pub fn kind(document: &Node) -> Result<&'static CaseKind, Fault> {
+    let names = kind::names();
+    let written = match document.find("kind").map(|node| &node.value) {
+        None => {
+            let first = format!("this key is required, one of {names}: it says what the file describes");
+            return Err(document.fault("kind", first));
+        }
+        Some(Value::Plain(Json::String(name))) => name,
+        Some(_) => return Err(document.fault("kind", format!("must be one of {names}"))),
+    };
+    kind::find(written).ok_or_else(|| {
+        let near = nearest(written, kind::KINDS.iter().map(|kind| kind.name));
+        let hint = near.map_or(String::new(), |n| format!("; did you mean \"{n}\"?"));
+        document.fault("kind", format!("must be one of {names}{hint}"))
+    })
+}
 
 /// All faults of a document against the schema of its kind.
 #[must_use]
-pub fn faults(document: &Node) -> Vec<Fault> {
-    let schema = schema();
+pub fn faults(document: &Node, kind: &CaseKind) -> Vec<Fault> {
+    let schema = (kind.schema)();
     let mut faults = Vec::new();
     check(document, document, &schema, &schema, "", &mut faults);
     faults

@@ -1,26 +1,36 @@
 //! Case files: from TOML text to gears, options and requests in SI units.
 //!
-//! `text -> document (with lines) -> checked against the schema -> SpurPair (as written) -> SpurPairCase (resolved, SI)`; every stage
-//! tells all its faults at once.
+//! `text -> document (with lines) -> checked against the schema of its kind -> as written -> resolved (SI)`; every stage tells all its
+//! faults at once. A kind is a folder with its `schema` (keys, units, ranges, defaults) and `resolve`, listed in [`kind::KINDS`].
 
 pub mod check;
 pub mod document;
 pub mod fault;
+pub mod kind;
 pub mod reference;
-pub mod resolve;
-pub mod schema;
+pub mod spur_pair;
 pub mod template;
 
 use std::path::Path;
 
+use serde::de::DeserializeOwned;
+
 pub use fault::{CaseFaults, Fault};
-pub use resolve::SpurPairCase;
+pub use spur_pair::SpurPairCase;
+
+/// A case file, checked and resolved.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub enum Case {
+    /// Statics of a spur gear pair.
+    SpurPair(Box<SpurPairCase>),
+}
 
 /// Reads, checks and resolves a case file.
 ///
 /// # Errors
 /// All faults of the file.
-pub fn load(file: &Path) -> Result<SpurPairCase, CaseFaults> {
+pub fn load(file: &Path) -> Result<Case, CaseFaults> {
     let text = std::fs::read_to_string(file).map_err(|error| {
         let message = match error.kind() {
             std::io::ErrorKind::NotFound => {
@@ -33,21 +43,36 @@ pub fn load(file: &Path) -> Result<SpurPairCase, CaseFaults> {
     from_text(&text, file)
 }
 
-/// Checks and resolves the text of a case file; `file` names it in faults, and tables it refers to are looked for beside it.
+/// Reads a case file that must be a spur pair.
+///
+/// # Errors
+/// All faults of the file, or its kind.
+pub fn load_spur_pair(file: &Path) -> Result<SpurPairCase, CaseFaults> {
+    match load(file)? {
+        Case::SpurPair(case) => Ok(*case),
+    }
+}
+
+/// Checks and resolves the text of a case file; `file` names it in faults, and files it refers to are looked for beside it.
 ///
 /// # Errors
 /// All faults of the text.
-pub fn from_text(text: &str, file: &Path) -> Result<SpurPairCase, CaseFaults> {
-    let document = document::parse(text).map_err(|fault| CaseFaults::new(file, vec![fault]))?;
-    let faults = check::faults(&document);
+pub fn from_text(text: &str, file: &Path) -> Result<Case, CaseFaults> {
+    let one = |fault| CaseFaults::new(file, vec![fault]);
+    let document = document::parse(text).map_err(one)?;
+    let kind = check::kind(&document).map_err(one)?;
+    let faults = check::faults(&document, kind);
     if !faults.is_empty() {
         return Err(CaseFaults::new(file, faults));
     }
-    let written: schema::SpurPair = toml::from_str(text).map_err(|error| {
-        let line = error.span().map(|span| text[..span.start].matches('\n').count() + 1);
-        let fault = Fault { line, key: String::new(), value: None, message: error.message().to_owned() };
-        CaseFaults::new(file, vec![fault])
-    })?;
     let folder = file.parent().unwrap_or(Path::new(""));
-    resolve::resolve(written, &document, folder).map_err(|faults| CaseFaults::new(file, faults))
+    (kind.resolve)(text, &document, folder).map_err(|faults| CaseFaults::new(file, faults))
+}
+
+/// The file as its kind's schema has it; what the schema check let through but the types do not is told with its line.
+fn as_written<T: DeserializeOwned>(text: &str) -> Result<T, Vec<Fault>> {
+    toml::from_str(text).map_err(|error| {
+        let line = error.span().map(|span| text[..span.start].matches('\n').count() + 1);
+        vec![Fault { line, key: String::new(), value: None, message: error.message().to_owned() }]
+    })
 }

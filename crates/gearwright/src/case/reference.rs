@@ -1,9 +1,9 @@
-//! The JSON schema of case files, and every key with its documentation.
+//! Every key of a kind of case file with its documentation, from the JSON schema.
 
 use serde_json::Value as Json;
 
 use super::check::expected;
-use super::schema::SpurPair;
+use super::kind::CaseKind;
 
 /// One key of the case file.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,12 +20,6 @@ pub struct KeyReference {
     pub default: Option<String>,
     /// Documentation.
     pub text: String,
-}
-
-/// The JSON schema (draft 2020-12) of a spur-pair case file.
-#[must_use]
-pub fn schema() -> Json {
-    schemars::schema_for!(SpurPair).to_value()
 }
 
 /// Follows references and unwraps optional values; keeps the description and default written beside a reference.
@@ -51,10 +45,10 @@ pub fn resolve(schema: &Json, whole: &Json) -> Json {
     target
 }
 
-/// All keys in the order of the schema.
+/// All keys of a kind in the order of its schema.
 #[must_use]
-pub fn keys() -> Vec<KeyReference> {
-    let whole = schema();
+pub fn keys(kind: &CaseKind) -> Vec<KeyReference> {
+    let whole = (kind.schema)();
     let mut all = Vec::new();
     collect(&whole, &whole, "", None, &mut all);
     all

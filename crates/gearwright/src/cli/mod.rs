@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::{Parser, Subcommand};
 
-use crate::case::{self, reference, template};
+use crate::case::kind::{self, CaseKind};
+use crate::case::{self, Case, reference, template};
 use crate::run;
 
 mod progress;
@@ -48,8 +49,11 @@ enum Command {
         /// Key with or without its sections, e.g. tip_relief_um or pinion.hub.condition.
         key: Option<String>,
     },
-    /// Print the JSON schema of case files.
-    Schema,
+    /// Print the JSON schema of a kind of case file, for editors.
+    Schema {
+        /// Kind of case: see `gearwright init --help`.
+        kind: String,
+    },
 }
 
 /// Runs the command line; returns what goes to standard output.
@@ -59,19 +63,10 @@ enum Command {
 pub fn execute(cli: &Cli) -> anyhow::Result<String> {
     match &cli.command {
         Command::Run { case, out, threads } => run_case(case, out.as_deref(), *threads),
-        Command::Check { case } => {
-            let loaded = case::load(case)?;
-            let notes: String = loaded.pair.findings().iter().map(|f| format!("note: {f}\n")).collect();
-            Ok(format!(
-                "{notes}{}: valid; {} positions, contact ratio {:.3}\n",
-                case.display(),
-                loaded.mesh_cycles.len(),
-                loaded.pair.contact_ratio()
-            ))
-        }
+        Command::Check { case } => Ok(format!("{}{}: valid\n", about(&case::load(case)?), case.display())),
         Command::Init { kind, file } => init(kind, file.as_deref()),
         Command::Explain { key } => explain(key.as_deref()),
-        Command::Schema => Ok(format!("{}\n", serde_json::to_string_pretty(&reference::schema())?)),
+        Command::Schema { kind } => Ok(format!("{}\n", serde_json::to_string_pretty(&(known_kind(kind)?.schema)())?)),
     }
 }
 
@@ -90,7 +85,7 @@ fn run_case(file: &Path, out: Option<&Path>, threads: Option<usize>) -> anyhow::
     }
     let pool = pool.build().context("threads cannot be started")?;
     let observer = progress::Terminal::new();
-    let finished = pool.install(|| run::spur_pair(&loaded, &target, &observer));
+    let finished = pool.install(|| run::run(&loaded, &target, &observer));
     observer.finish();
     let finished = finished?;
     if finished.unusable > 0 {
@@ -103,20 +98,39 @@ fn run_case(file: &Path, out: Option<&Path>, threads: Option<usize>) -> anyhow::
 }
 
 fn init(kind: &str, file: Option<&Path>) -> anyhow::Result<String> {
-    if !template::KINDS.contains(&kind) {
-        bail!("there is no kind of case \"{kind}\"; known: {}", template::KINDS.join(", "));
-    }
-    let default = PathBuf::from(format!("{kind}.toml"));
+    let kind = known_kind(kind)?;
+    let default = PathBuf::from(format!("{}.toml", kind.name));
     let file = file.unwrap_or(&default);
     if file.exists() {
         bail!("{} exists; choose another name", file.display());
     }
-    std::fs::write(file, template::spur_pair()).with_context(|| format!("{} cannot be written", file.display()))?;
+    std::fs::write(file, template::commented(kind)).with_context(|| format!("{} cannot be written", file.display()))?;
     Ok(format!("wrote {}; run it with: gearwright run {}\n", file.display(), file.display()))
 }
 
+/// What a valid case comes to, one line each.
+fn about(case: &Case) -> String {
+    match case {
+        Case::SpurPair(case) => {
+            let notes: String = case.pair.findings().iter().map(|f| format!("note: {f}\n")).collect();
+            let (positions, ratio) = (case.mesh_cycles.len(), case.pair.contact_ratio());
+            format!("{notes}{positions} positions, contact ratio {ratio:.3}\n")
+        }
+    }
+}
+
+fn known_kind(name: &str) -> anyhow::Result<&'static CaseKind> {
+    kind::find(name).with_context(|| format!("there is no kind of case \"{name}\"; known: {}", kind::names()))
+}
+
 fn explain(key: Option<&str>) -> anyhow::Result<String> {
-    let all = reference::keys();
+    // a key that several kinds share is told once
+    let mut all: Vec<reference::KeyReference> = Vec::new();
+    for entry in kind::KINDS.iter().flat_map(reference::keys) {
+        if !all.contains(&entry) {
+            all.push(entry);
+        }
+    }
     let Some(key) = key else {
         return Ok(all.iter().filter(|k| !k.is_section).map(|k| format!("{}\n", k.key)).collect());
     };

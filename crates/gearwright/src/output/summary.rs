@@ -7,7 +7,7 @@ use gear_geom::{GearPair, Landmark, Landmarks, Member};
 use serde::Serialize;
 
 use crate::case::SpurPairCase;
-use crate::case::schema::SpurPair;
+use crate::case::spur_pair::schema::SpurPair;
 
 /// Everything the summary holds.
 #[derive(Debug, Serialize)]

@@ -69,10 +69,7 @@ pub fn crest_factor(signal: &[f64], definition: CrestDefinition) -> Result<f64> 
 pub(crate) fn crest_factor_of(moments: &Moments, definition: CrestDefinition) -> Result<f64> {
     let rms = moments.rms();
     if rms <= 0.0 {
-        return Err(HumsError::Undefined {
-            what: "crest factor",
-            reason: "the signal is zero everywhere",
-        });
+        return Err(HumsError::Undefined { what: "crest factor", reason: "the signal is zero everywhere" });
     }
     Ok(match definition {
         CrestDefinition::AbsolutePeak => moments.peak() / rms,
@@ -129,18 +126,13 @@ pub fn energy_operator(signal: &[f64]) -> Result<f64> {
 
 pub(crate) fn energy_operator_scaled(signal: &[f64], peak: f64) -> Result<f64> {
     let mut accumulator = TeagerAccumulator::with_peak(peak);
-    accumulator
-        .push(signal)
-        .and_then(|()| accumulator.finish(peak))
-        .map_err(|error| match signal.iter().position(|x| !x.is_finite()) {
+    accumulator.push(signal).and_then(|()| accumulator.finish(peak)).map_err(|error| {
+        match signal.iter().position(|x| !x.is_finite()) {
             // A fault found in derived samples is restated in terms of the signal's own.
-            Some(index) => HumsError::NotFinite {
-                what: ENERGY_OPERATOR,
-                index,
-                value: signal[index],
-            },
+            Some(index) => HumsError::NotFinite { what: ENERGY_OPERATOR, index, value: signal[index] },
             None => error,
-        })
+        }
+    })
 }
 
 const ENERGY_OPERATOR: &str = "energy operator";
@@ -158,11 +150,7 @@ pub(crate) struct TeagerAccumulator {
 
 /// Power of two near 1 / peak.
 fn inverse_scale(peak: f64) -> f64 {
-    if peak > 0.0 && peak.is_finite() {
-        (-peak.log2().floor()).clamp(-1000.0, 1000.0).exp2()
-    } else {
-        1.0
-    }
+    if peak > 0.0 && peak.is_finite() { (-peak.log2().floor()).clamp(-1000.0, 1000.0).exp2() } else { 1.0 }
 }
 
 impl TeagerAccumulator {
@@ -216,11 +204,7 @@ impl TeagerAccumulator {
     /// The indicator; `peak` is the largest absolute sample pushed.
     pub(crate) fn finish(mut self, peak: f64) -> Result<f64> {
         if self.count < 3 {
-            return Err(HumsError::TooShort {
-                what: ENERGY_OPERATOR,
-                needed: 3,
-                found: self.count,
-            });
+            return Err(HumsError::TooShort { what: ENERGY_OPERATOR, needed: 3, found: self.count });
         }
         let ends = [
             self.teager(self.last[0], self.last[1], self.first[0]),
@@ -232,10 +216,7 @@ impl TeagerAccumulator {
         // multiplied by its own power of two).
         let unit = self.scale / inverse_scale(peak);
         if moments.standard_deviation() <= 16.0 * f64::EPSILON * unit * unit {
-            return Err(HumsError::Undefined {
-                what: ENERGY_OPERATOR,
-                reason: "the Teager energy is constant",
-            });
+            return Err(HumsError::Undefined { what: ENERGY_OPERATOR, reason: "the Teager energy is constant" });
         }
         moments.standardized(4)
     }
@@ -253,29 +234,17 @@ impl TeagerAccumulator {
 /// signal; empty signal or non-finite sample.
 pub fn normalized_moment(signal: &[f64], alpha: f64) -> Result<f64> {
     if !(alpha > 0.0 && alpha <= 16.0) {
-        return Err(HumsError::Parameter {
-            parameter: "alpha",
-            value: alpha,
-            allowed: "above 0, at most 16",
-        });
+        return Err(HumsError::Parameter { parameter: "alpha", value: alpha, allowed: "above 0, at most 16" });
     }
     let moments = Moments::of(signal)?;
     if moments.is_constant() {
-        return Err(HumsError::Undefined {
-            what: "S_alpha",
-            reason: "the signal is constant, its variance is zero",
-        });
+        return Err(HumsError::Undefined { what: "S_alpha", reason: "the signal is constant, its variance is zero" });
     }
     let (mean, sigma) = (moments.mean(), moments.standard_deviation());
     // Sums of blocks keep the rounding error of long records small.
     let sum: f64 = signal
         .chunks(BLOCK)
-        .map(|block| {
-            block
-                .iter()
-                .map(|x| ((x - mean).abs() / sigma).powf(alpha))
-                .sum::<f64>()
-        })
+        .map(|block| block.iter().map(|x| ((x - mean).abs() / sigma).powf(alpha)).sum::<f64>())
         .sum();
     finite_or_out_of_range("S_alpha", sum / signal.len() as f64)
 }

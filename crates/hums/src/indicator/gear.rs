@@ -28,10 +28,7 @@ pub const SER_PAIRS: usize = 6;
 /// Size of rounding in the spectrum's amplitudes. The larger of real and imaginary part stands in for
 /// the modulus: no overflow, no square roots.
 fn floor_of(spectrum: &Spectrum) -> f64 {
-    let largest = spectrum
-        .bins()
-        .iter()
-        .fold(0.0_f64, |m, bin| m.max(bin.re.abs()).max(bin.im.abs()));
+    let largest = spectrum.bins().iter().fold(0.0_f64, |m, bin| m.max(bin.re.abs()).max(bin.im.abs()));
     LINE_FLOOR * 2.0 * largest / spectrum.samples() as f64
 }
 
@@ -41,22 +38,13 @@ fn floor_of(spectrum: &Spectrum) -> f64 {
 /// # Errors
 /// [`HumsError::Undefined`] when no mesh amplitude rises above rounding;
 /// [`HumsError::OrderNotResolved`] when not even the fundamental is resolved.
-pub fn fm0(
-    average: &Moments,
-    spectrum: &Spectrum,
-    mesh_order: usize,
-    harmonics: usize,
-) -> Result<f64> {
+pub fn fm0(average: &Moments, spectrum: &Spectrum, mesh_order: usize, harmonics: usize) -> Result<f64> {
     spectrum.amplitude(mesh_order)?;
     let highest = spectrum.bins().len() - 1;
-    let sum: f64 = (1..=harmonics.min(highest / mesh_order.max(1)))
-        .filter_map(|h| spectrum.amplitude(h * mesh_order).ok())
-        .sum();
+    let sum: f64 =
+        (1..=harmonics.min(highest / mesh_order.max(1))).filter_map(|h| spectrum.amplitude(h * mesh_order).ok()).sum();
     if mesh_order == 0 || sum <= floor_of(spectrum) {
-        return Err(HumsError::Undefined {
-            what: "FM0",
-            reason: "there is no mesh-harmonic amplitude to divide by",
-        });
+        return Err(HumsError::Undefined { what: "FM0", reason: "there is no mesh-harmonic amplitude to divide by" });
     }
     Ok(peak_to_peak_of(average)? / sum)
 }
@@ -67,20 +55,12 @@ pub fn fm0(
 /// [`HumsError::Undefined`] when the regular signal is constant.
 pub fn energy_ratio(difference: &Moments, regular: &Moments) -> Result<f64> {
     if regular.is_constant() {
-        return Err(HumsError::Undefined {
-            what: "energy ratio",
-            reason: "the regular signal has no variance",
-        });
+        return Err(HumsError::Undefined { what: "energy ratio", reason: "the regular signal has no variance" });
     }
     Ok(difference.standard_deviation() / regular.standard_deviation())
 }
 
-fn sideband_sum(
-    spectrum: &Spectrum,
-    mesh_order: usize,
-    spacing: usize,
-    pairs: usize,
-) -> Result<f64> {
+fn sideband_sum(spectrum: &Spectrum, mesh_order: usize, spacing: usize, pairs: usize) -> Result<f64> {
     let reach = pairs.saturating_mul(spacing);
     if spacing == 0 || reach >= mesh_order {
         return Err(HumsError::Parameter {
@@ -91,9 +71,7 @@ fn sideband_sum(
     }
     (1..=pairs).try_fold(0.0, |sum, i| {
         let offset = i * spacing;
-        Ok(sum
-            + spectrum.amplitude(mesh_order - offset)?
-            + spectrum.amplitude(mesh_order + offset)?)
+        Ok(sum + spectrum.amplitude(mesh_order - offset)? + spectrum.amplitude(mesh_order + offset)?)
     })
 }
 
@@ -109,18 +87,10 @@ pub fn sideband_index(spectrum: &Spectrum, mesh_order: usize, spacing: usize) ->
 ///
 /// # Errors
 /// Sidebands outside the spectrum; [`HumsError::Undefined`] for a constant average.
-pub fn sideband_level_factor(
-    average: &Moments,
-    spectrum: &Spectrum,
-    mesh_order: usize,
-    spacing: usize,
-) -> Result<f64> {
+pub fn sideband_level_factor(average: &Moments, spectrum: &Spectrum, mesh_order: usize, spacing: usize) -> Result<f64> {
     let sum = sideband_sum(spectrum, mesh_order, spacing, 1)?;
     if average.is_constant() {
-        return Err(HumsError::Undefined {
-            what: "sideband level factor",
-            reason: "the average has no variance",
-        });
+        return Err(HumsError::Undefined { what: "sideband level factor", reason: "the average has no variance" });
     }
     Ok(sum / average.standard_deviation())
 }
@@ -129,11 +99,7 @@ pub fn sideband_level_factor(
 ///
 /// # Errors
 /// Sidebands outside the spectrum; [`HumsError::Undefined`] without a mesh line.
-pub fn sideband_energy_ratio(
-    spectrum: &Spectrum,
-    mesh_order: usize,
-    spacing: usize,
-) -> Result<f64> {
+pub fn sideband_energy_ratio(spectrum: &Spectrum, mesh_order: usize, spacing: usize) -> Result<f64> {
     let sum = sideband_sum(spectrum, mesh_order, spacing, SER_PAIRS)?;
     let mesh = spectrum.amplitude(mesh_order)?;
     if mesh <= floor_of(spectrum) {

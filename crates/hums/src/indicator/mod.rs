@@ -175,11 +175,7 @@ impl StreamingIndicators {
     /// order of magnitude matters, and only outside 1e-18 to 1e18.
     #[must_use]
     pub fn new(kind: SignalKind, peak: f64) -> Self {
-        Self {
-            kind,
-            moments: MomentAccumulator::with_peak(peak),
-            energy: Ok(TeagerAccumulator::with_peak(peak)),
-        }
+        Self { kind, moments: MomentAccumulator::with_peak(peak), energy: Ok(TeagerAccumulator::with_peak(peak)) }
     }
 
     /// Takes the next samples.
@@ -190,11 +186,9 @@ impl StreamingIndicators {
     pub fn push(&mut self, samples: &[f64]) -> Result<()> {
         // Blocks of moments may lag behind, so that gaps are looked for here.
         require_finite("indicators", samples).map_err(|error| match error {
-            HumsError::NotFinite { what, index, value } => HumsError::NotFinite {
-                what,
-                index: index + self.moments.count(),
-                value,
-            },
+            HumsError::NotFinite { what, index, value } => {
+                HumsError::NotFinite { what, index: index + self.moments.count(), value }
+            }
             other => other,
         })?;
         self.moments.push(samples)?;
@@ -215,9 +209,7 @@ impl StreamingIndicators {
         let energy = self.energy.and_then(|e| e.finish(moments.peak()));
         // Faults of derived samples are faults of range here: the samples themselves are finite.
         let energy = energy.map_err(|fault| match fault {
-            HumsError::NotFinite { .. } => HumsError::OutOfRange {
-                what: "energy operator",
-            },
+            HumsError::NotFinite { .. } => HumsError::OutOfRange { what: "energy operator" },
             other => other,
         });
         Ok(table_of(&moments, energy, self.kind))
@@ -230,11 +222,7 @@ fn statistics(signal: &[f64], moments: &Moments, kind: SignalKind) -> Vec<Entry>
 }
 
 fn table_of(moments: &Moments, energy: Result<f64>, kind: SignalKind) -> Vec<Entry> {
-    let entry = |indicator, value| Entry {
-        indicator,
-        signal: kind,
-        value,
-    };
+    let entry = |indicator, value| Entry { indicator, signal: kind, value };
     let crest = |definition| basic::crest_factor_of(moments, definition);
     let mut table = vec![
         entry(Indicator::Mean, Ok(moments.mean())),
@@ -242,14 +230,8 @@ fn table_of(moments: &Moments, energy: Result<f64>, kind: SignalKind) -> Vec<Ent
         entry(Indicator::Peak, Ok(moments.peak())),
         entry(Indicator::PeakToPeak, basic::peak_to_peak_of(moments)),
         entry(Indicator::CrestFactor, crest(CrestDefinition::AbsolutePeak)),
-        entry(
-            Indicator::CrestFactorPeakToPeak,
-            crest(CrestDefinition::PeakToPeak),
-        ),
-        entry(
-            Indicator::CrestFactorMaximum,
-            crest(CrestDefinition::Maximum),
-        ),
+        entry(Indicator::CrestFactorPeakToPeak, crest(CrestDefinition::PeakToPeak)),
+        entry(Indicator::CrestFactorMaximum, crest(CrestDefinition::Maximum)),
         entry(Indicator::Skewness, moments.standardized(3)),
     ];
     if matches!(kind, SignalKind::Difference | SignalKind::ExactDifference) {
@@ -272,9 +254,7 @@ pub struct GearAnalyzer {
 
 impl std::fmt::Debug for GearAnalyzer {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("GearAnalyzer")
-            .field("splitter", &self.splitter)
-            .finish_non_exhaustive()
+        f.debug_struct("GearAnalyzer").field("splitter", &self.splitter).finish_non_exhaustive()
     }
 }
 
@@ -295,16 +275,10 @@ impl GearAnalysis {
     /// # Errors
     /// The reason in the entry, or [`HumsError::Undefined`] when the table has no such entry.
     pub fn value(&self, indicator: Indicator, signal: SignalKind) -> Result<f64> {
-        self.table
-            .iter()
-            .find(|e| e.indicator == indicator && e.signal == signal)
-            .map_or(
-                Err(HumsError::Undefined {
-                    what: indicator.name(),
-                    reason: "it is not computed for this kind of signal",
-                }),
-                |e| e.value.clone(),
-            )
+        self.table.iter().find(|e| e.indicator == indicator && e.signal == signal).map_or(
+            Err(HumsError::Undefined { what: indicator.name(), reason: "it is not computed for this kind of signal" }),
+            |e| e.value.clone(),
+        )
     }
 }
 
@@ -315,10 +289,7 @@ impl GearAnalyzer {
     /// # Errors
     /// As [`Splitter::new`].
     pub fn new(samples: usize, rule: &RemovalRule) -> Result<Self> {
-        Ok(Self {
-            splitter: Splitter::new(samples, rule)?,
-            inverse: inverse_plan(samples),
-        })
+        Ok(Self { splitter: Splitter::new(samples, rule)?, inverse: inverse_plan(samples) })
     }
 
     /// All indicators of an average.
@@ -337,34 +308,18 @@ impl GearAnalyzer {
 
         let mut table = statistics(average, &of_average, SignalKind::Average);
         let mut gear = |indicator, signal, value| {
-            table.push(Entry {
-                indicator,
-                signal,
-                value,
-            });
+            table.push(Entry { indicator, signal, value });
         };
         let spectrum = &signals.spectrum;
         let average_kind = SignalKind::Average;
-        gear(
-            Indicator::Fm0,
-            average_kind,
-            gear::fm0(&of_average, spectrum, mesh, rule.harmonics),
-        );
-        gear(
-            Indicator::SidebandIndex,
-            average_kind,
-            gear::sideband_index(spectrum, mesh, spacing),
-        );
+        gear(Indicator::Fm0, average_kind, gear::fm0(&of_average, spectrum, mesh, rule.harmonics));
+        gear(Indicator::SidebandIndex, average_kind, gear::sideband_index(spectrum, mesh, spacing));
         gear(
             Indicator::SidebandLevelFactor,
             average_kind,
             gear::sideband_level_factor(&of_average, spectrum, mesh, spacing),
         );
-        gear(
-            Indicator::SidebandEnergyRatio,
-            average_kind,
-            gear::sideband_energy_ratio(spectrum, mesh, spacing),
-        );
+        gear(Indicator::SidebandEnergyRatio, average_kind, gear::sideband_energy_ratio(spectrum, mesh, spacing));
         gear(
             Indicator::Na4,
             SignalKind::Residual,
@@ -378,18 +333,10 @@ impl GearAnalyzer {
                 unless_rounding(&moments, &of_average).and_then(|m| m.standardized(4))
             }),
         );
-        gear(
-            Indicator::EnergyRatio,
-            SignalKind::Difference,
-            gear::energy_ratio(&of_difference, &of_regular),
-        );
+        gear(Indicator::EnergyRatio, SignalKind::Difference, gear::energy_ratio(&of_difference, &of_regular));
         match unless_rounding(&of_difference, &of_average) {
             Ok(moments) => {
-                table.extend(statistics(
-                    &signals.difference,
-                    moments,
-                    SignalKind::Difference,
-                ));
+                table.extend(statistics(&signals.difference, moments, SignalKind::Difference));
             }
             Err(reason) => {
                 let rest = statistics(&signals.difference, &of_difference, SignalKind::Difference);
@@ -401,11 +348,7 @@ impl GearAnalyzer {
                 }));
             }
         }
-        Ok(GearAnalysis {
-            table,
-            signals,
-            mesh_envelope: envelope.ok(),
-        })
+        Ok(GearAnalysis { table, signals, mesh_envelope: envelope.ok() })
     }
 }
 

@@ -54,11 +54,7 @@ impl QuasiKurtosis {
     pub fn new(memory: Memory) -> Result<Self> {
         if let Memory::Locked { z, learn } = memory {
             if !(z.is_finite() && z >= 0.0) {
-                return Err(HumsError::Parameter {
-                    parameter: "z",
-                    value: z,
-                    allowed: "finite and >= 0",
-                });
+                return Err(HumsError::Parameter { parameter: "z", value: z, allowed: "finite and >= 0" });
             }
             if learn < 2 {
                 return Err(HumsError::Parameter {
@@ -68,18 +64,12 @@ impl QuasiKurtosis {
                 });
             }
         }
-        Ok(Self {
-            memory,
-            ..Self::default()
-        })
+        Ok(Self { memory, ..Self::default() })
     }
 
     /// Forgets all records: for a change of load or speed.
     pub fn reset(&mut self) {
-        *self = Self {
-            memory: self.memory,
-            ..Self::default()
-        };
+        *self = Self { memory: self.memory, ..Self::default() };
     }
 
     /// Records in the reference variance.
@@ -125,10 +115,7 @@ impl QuasiKurtosis {
             return Ok(0.0);
         }
         let ratio = variance / self.mean_variance;
-        finite_or_out_of_range(
-            "quasi-normalised kurtosis",
-            moments.standardized(4)? * ratio * ratio,
-        )
+        finite_or_out_of_range("quasi-normalised kurtosis", moments.standardized(4)? * ratio * ratio)
     }
 
     fn exceeds(&mut self, variance: f64) -> bool {

@@ -39,11 +39,7 @@ pub fn read<R: Read>(source: R) -> Result<MemoryReader, ReadError> {
     let Some(samples) = arrays.iter().map(|a| a.1.max(a.2)).max() else {
         return Err(mat_error("no vector or matrix of real numbers".into()));
     };
-    let mut recording = Recording {
-        names: Vec::new(),
-        rate,
-        channels: Vec::new(),
-    };
+    let mut recording = Recording { names: Vec::new(), rate, channels: Vec::new() };
     for (name, rows, columns, values) in arrays {
         if rows.max(columns) != samples {
             continue;
@@ -56,21 +52,14 @@ pub fn read<R: Read>(source: R) -> Result<MemoryReader, ReadError> {
             } else {
                 values.iter().skip(c).step_by(rows).copied().collect()
             });
-            recording.names.push(if count == 1 {
-                name.clone()
-            } else {
-                format!("{name}({})", c + 1)
-            });
+            recording.names.push(if count == 1 { name.clone() } else { format!("{name}({})", c + 1) });
         }
     }
     Ok(MemoryReader::new(recording))
 }
 
 fn mat_error(reason: String) -> ReadError {
-    ReadError::Format {
-        format: "MAT v5",
-        reason,
-    }
+    ReadError::Format { format: "MAT v5", reason }
 }
 
 /// Values of a real array; `None` for a complex one.

@@ -77,9 +77,7 @@ pub enum ReadError {
         channels: usize,
     },
     /// The extension of the file is not known.
-    #[error(
-        "cannot tell the format of {path} from its name; known: csv, tsv, txt, dat, asc, wav, npy, mat"
-    )]
+    #[error("cannot tell the format of {path} from its name; known: csv, tsv, txt, dat, asc, wav, npy, mat")]
     UnknownExtension {
         /// Which file.
         path: PathBuf,
@@ -99,11 +97,7 @@ pub trait BlockReader {
     ///
     /// # Errors
     /// [`ReadError`]; what was appended before it stays and is good.
-    fn read_block(
-        &mut self,
-        samples: usize,
-        columns: &mut [Vec<f64>],
-    ) -> std::result::Result<usize, ReadError>;
+    fn read_block(&mut self, samples: usize, columns: &mut [Vec<f64>]) -> std::result::Result<usize, ReadError>;
 }
 
 /// A whole recording in memory.
@@ -121,24 +115,13 @@ pub struct Recording {
 ///
 /// # Errors
 /// [`ReadError`].
-pub fn open(
-    path: &Path,
-    options: &text::TextOptions,
-) -> std::result::Result<Box<dyn BlockReader>, ReadError> {
-    let extension = path
-        .extension()
-        .map(|e| e.to_string_lossy().to_ascii_lowercase())
-        .unwrap_or_default();
-    let known = [
-        "csv", "tsv", "txt", "dat", "asc", "wav", "wave", "npy", "mat",
-    ];
+pub fn open(path: &Path, options: &text::TextOptions) -> std::result::Result<Box<dyn BlockReader>, ReadError> {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let known = ["csv", "tsv", "txt", "dat", "asc", "wav", "wave", "npy", "mat"];
     if !known.contains(&extension.as_str()) {
         return Err(ReadError::UnknownExtension { path: path.into() });
     }
-    let file = File::open(path).map_err(|source| ReadError::File {
-        path: path.into(),
-        source,
-    })?;
+    let file = File::open(path).map_err(|source| ReadError::File { path: path.into(), source })?;
     Ok(match extension.as_str() {
         "wav" | "wave" => Box::new(wav::WavRecording::new(BufReader::new(file))?),
         "npy" => npy::open(BufReader::new(file))?,
@@ -154,11 +137,7 @@ pub fn open(
 pub fn read_all(reader: &mut dyn BlockReader) -> std::result::Result<Recording, ReadError> {
     let mut channels = vec![Vec::new(); reader.channels().len()];
     while reader.read_block(1 << 16, &mut channels)? > 0 {}
-    Ok(Recording {
-        names: reader.channels().to_vec(),
-        rate: reader.rate(),
-        channels,
-    })
+    Ok(Recording { names: reader.channels().to_vec(), rate: reader.rate(), channels })
 }
 
 /// Sampling rate (Hz) of a time column (s): steps over duration.
@@ -171,11 +150,7 @@ pub fn rate_of_times(times: &[f64]) -> crate::Result<f64> {
     crate::error::require_finite("time column", times)?;
     let step = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
     crate::error::require_positive("mean time step", step)?;
-    match times
-        .windows(2)
-        .map(|w| w[1] - w[0])
-        .find(|d| (d - step).abs() > 0.5 * step)
-    {
+    match times.windows(2).map(|w| w[1] - w[0]).find(|d| (d - step).abs() > 0.5 * step) {
         Some(value) => Err(crate::HumsError::Parameter {
             parameter: "time step",
             value,
@@ -186,14 +161,7 @@ pub fn rate_of_times(times: &[f64]) -> crate::Result<f64> {
 }
 
 fn check_columns(channels: usize, columns: &[Vec<f64>]) -> std::result::Result<(), ReadError> {
-    if channels == columns.len() {
-        Ok(())
-    } else {
-        Err(ReadError::Columns {
-            given: columns.len(),
-            channels,
-        })
-    }
+    if channels == columns.len() { Ok(()) } else { Err(ReadError::Columns { given: columns.len(), channels }) }
 }
 
 fn numbered(count: usize) -> Vec<String> {
@@ -224,11 +192,7 @@ impl BlockReader for MemoryReader {
         self.recording.rate
     }
 
-    fn read_block(
-        &mut self,
-        samples: usize,
-        columns: &mut [Vec<f64>],
-    ) -> std::result::Result<usize, ReadError> {
+    fn read_block(&mut self, samples: usize, columns: &mut [Vec<f64>]) -> std::result::Result<usize, ReadError> {
         check_columns(self.recording.channels.len(), columns)?;
         let total = self.recording.channels.iter().map(Vec::len).min();
         let count = samples.min(total.unwrap_or(0).saturating_sub(self.at));

@@ -12,8 +12,7 @@ use std::io::Read;
 /// # Errors
 /// [`ReadError::Format`] when it is not an NPY file of numbers with one or two axes.
 pub fn open<R: Read + 'static>(mut source: R) -> Result<Box<dyn BlockReader>, ReadError> {
-    let header =
-        NpyHeader::from_reader(&mut source).map_err(|e| npy_error(format!("bad header: {e}")))?;
+    let header = NpyHeader::from_reader(&mut source).map_err(|e| npy_error(format!("bad header: {e}")))?;
     let decode = Decoder::new(&header.dtype())?;
     let (samples, channels, interleaved) = match *header.shape() {
         [n] => (n, 1, true),
@@ -21,25 +20,15 @@ pub fn open<R: Read + 'static>(mut source: R) -> Result<Box<dyn BlockReader>, Re
         [a, b] => (b, a, header.order() == Order::Fortran),
         ref shape => return Err(npy_error(format!("{} axes", shape.len()))),
     };
-    let bytes = samples
-        .checked_mul(channels)
-        .and_then(|n| n.checked_mul(decode.size as u64));
+    let bytes = samples.checked_mul(channels).and_then(|n| n.checked_mul(decode.size as u64));
     let (Some(bytes), Ok(width)) = (bytes, usize::try_from(channels)) else {
-        return Err(npy_error(
-            "the array is larger than memory can address".into(),
-        ));
+        return Err(npy_error("the array is larger than memory can address".into()));
     };
     if width > 65_536 || (width == 0 && samples > 0) {
         return Err(npy_error(format!("{width} channels")));
     }
     if interleaved {
-        return Ok(Box::new(NpyStream {
-            names: numbered(width),
-            source,
-            decode,
-            left: samples,
-            bytes: Vec::new(),
-        }));
+        return Ok(Box::new(NpyStream { names: numbered(width), source, decode, left: samples, bytes: Vec::new() }));
     }
     let mut raw = Vec::new();
     source.take(bytes).read_to_end(&mut raw)?;
@@ -49,24 +38,13 @@ pub fn open<R: Read + 'static>(mut source: R) -> Result<Box<dyn BlockReader>, Re
     let per_channel = samples as usize * decode.size;
     let channels = raw
         .chunks_exact(per_channel.max(1))
-        .map(|part| {
-            part.chunks_exact(decode.size)
-                .map(|b| decode.value(b))
-                .collect()
-        })
+        .map(|part| part.chunks_exact(decode.size).map(|b| decode.value(b)).collect())
         .collect();
-    Ok(Box::new(MemoryReader::new(Recording {
-        names: numbered(width),
-        rate: None,
-        channels,
-    })))
+    Ok(Box::new(MemoryReader::new(Recording { names: numbered(width), rate: None, channels })))
 }
 
 fn npy_error(reason: String) -> ReadError {
-    ReadError::Format {
-        format: "NPY",
-        reason,
-    }
+    ReadError::Format { format: "NPY", reason }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -98,11 +76,7 @@ impl Decoder {
         if !sizes.contains(&ty.size_field()) {
             return Err(unsupported());
         }
-        Ok(Self {
-            kind,
-            size: ty.size_field() as usize,
-            big: ty.endianness() == Endianness::Big,
-        })
+        Ok(Self { kind, size: ty.size_field() as usize, big: ty.endianness() == Endianness::Big })
     }
 
     fn value(self, bytes: &[u8]) -> f64 {
@@ -147,9 +121,7 @@ impl<R: Read> BlockReader for NpyStream<R> {
         while done < samples && self.left > 0 && width > 0 {
             let count = (samples - done).min(4096).min(self.left as usize);
             self.bytes.resize(count * width * size, 0);
-            self.source
-                .read_exact(&mut self.bytes)
-                .map_err(|e| npy_error(format!("the array breaks off: {e}")))?;
+            self.source.read_exact(&mut self.bytes).map_err(|e| npy_error(format!("the array breaks off: {e}")))?;
             for (c, column) in columns.iter_mut().enumerate() {
                 column.extend(
                     self.bytes

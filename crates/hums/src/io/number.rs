@@ -5,8 +5,8 @@
 //! the standard library's parser.
 
 const POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
-    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
+    1e21, 1e22,
 ];
 
 /// Parses the number at the start of `text`: value and length. `None` when there is none.
@@ -28,11 +28,7 @@ pub(super) fn parse(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
     let mut mantissa: u64 = 0;
     let mut exact = true;
     let start = at;
-    while let Some(digit) = text
-        .get(at)
-        .map(|b| b.wrapping_sub(b'0'))
-        .filter(|d| *d < 10)
-    {
+    while let Some(digit) = text.get(at).map(|b| b.wrapping_sub(b'0')).filter(|d| *d < 10) {
         exact &= mantissa < 900_719_925_474_099;
         mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
         at += 1;
@@ -42,11 +38,7 @@ pub(super) fn parse(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
     if text.get(at) == Some(&decimal) {
         at += 1;
         let fraction = at;
-        while let Some(digit) = text
-            .get(at)
-            .map(|b| b.wrapping_sub(b'0'))
-            .filter(|d| *d < 10)
-        {
+        while let Some(digit) = text.get(at).map(|b| b.wrapping_sub(b'0')).filter(|d| *d < 10) {
             exact &= mantissa < 900_719_925_474_099;
             mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
             at += 1;
@@ -65,11 +57,7 @@ pub(super) fn parse(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
         }
         let first = end;
         let mut power: i64 = 0;
-        while let Some(digit) = text
-            .get(end)
-            .map(|b| b.wrapping_sub(b'0'))
-            .filter(|d| *d < 10)
-        {
+        while let Some(digit) = text.get(end).map(|b| b.wrapping_sub(b'0')).filter(|d| *d < 10) {
             power = (power * 10 + i64::from(digit)).min(100_000);
             end += 1;
         }
@@ -80,17 +68,10 @@ pub(super) fn parse(text: &[u8], decimal: u8) -> Option<(f64, usize)> {
     }
     if exact && (-22..=22).contains(&exponent) {
         let m = mantissa as f64;
-        let value = if exponent < 0 {
-            m / POWERS[(-exponent) as usize]
-        } else {
-            m * POWERS[exponent as usize]
-        };
+        let value = if exponent < 0 { m / POWERS[(-exponent) as usize] } else { m * POWERS[exponent as usize] };
         return Some((if negative { -value } else { value }, at));
     }
-    let slow: String = text[..at]
-        .iter()
-        .map(|b| if *b == decimal { '.' } else { *b as char })
-        .collect();
+    let slow: String = text[..at].iter().map(|b| if *b == decimal { '.' } else { *b as char }).collect();
     let value: f64 = slow.parse().ok()?;
     value.is_finite().then_some((value, at))
 }

@@ -65,10 +65,7 @@ impl<R: Read> TextReader<R> {
             end: 0,
             ended: false,
             line: 1,
-            format: Format {
-                delimiter: b',',
-                decimal: b'.',
-            },
+            format: Format { delimiter: b',', decimal: b'.' },
             names: Vec::new(),
             row: Vec::new(),
         };
@@ -79,11 +76,7 @@ impl<R: Read> TextReader<R> {
         if head.starts_with(&[0xff, 0xfe]) || head.starts_with(&[0xfe, 0xff]) {
             return Err(format_error("the text is UTF-16; save it as UTF-8"));
         }
-        let skip = if head.starts_with(&[0xef, 0xbb, 0xbf]) {
-            3
-        } else {
-            0
-        };
+        let skip = if head.starts_with(&[0xef, 0xbb, 0xbf]) { 3 } else { 0 };
         let layout = find_layout(&head[skip..], reader.ended, options)
             .ok_or_else(|| format_error("no line of numbers in the first 256 KiB"))?;
         reader.start = skip + layout.offset;
@@ -167,10 +160,7 @@ impl<R: Read> BlockReader for TextReader<R> {
 }
 
 fn format_error(reason: &str) -> ReadError {
-    ReadError::Format {
-        format: "text",
-        reason: reason.into(),
-    }
+    ReadError::Format { format: "text", reason: reason.into() }
 }
 
 fn strip_cr(line: &[u8]) -> &[u8] {
@@ -202,13 +192,7 @@ fn fast_row(line: &[u8], format: Format, width: usize, row: &mut Vec<f64>) -> bo
 }
 
 /// Any line: `Ok(false)` for blanks and comments.
-fn slow_row(
-    line: &[u8],
-    format: Format,
-    width: usize,
-    number: u64,
-    row: &mut Vec<f64>,
-) -> Result<bool, ReadError> {
+fn slow_row(line: &[u8], format: Format, width: usize, number: u64, row: &mut Vec<f64>) -> Result<bool, ReadError> {
     row.clear();
     if is_blank(line) || comment(line).is_some() {
         return Ok(false);
@@ -219,20 +203,12 @@ fn slow_row(
         cells.pop();
     }
     if cells.len() != width {
-        return Err(ReadError::Row {
-            line: number,
-            found: cells.len(),
-            expected: width,
-        });
+        return Err(ReadError::Row { line: number, found: cells.len(), expected: width });
     }
     for (i, cell) in cells.iter().enumerate() {
         let Some(value) = cell_value(cell, format.decimal) else {
             let text = String::from_utf8_lossy(cell).chars().take(40).collect();
-            return Err(ReadError::Cell {
-                line: number,
-                column: i + 1,
-                text,
-            });
+            return Err(ReadError::Cell { line: number, column: i + 1, text });
         };
         row.push(value);
     }
@@ -260,9 +236,7 @@ fn split(line: &[u8], delimiter: u8) -> Vec<&[u8]> {
     let unquote = |cell| {
         let bare: &[u8] = cell;
         let bare = &bare[trim(bare)];
-        bare.strip_prefix(b"\"")
-            .and_then(|c| c.strip_suffix(b"\""))
-            .map_or(bare, <[u8]>::trim_ascii)
+        bare.strip_prefix(b"\"").and_then(|c| c.strip_suffix(b"\"")).map_or(bare, <[u8]>::trim_ascii)
     };
     if delimiter == b' ' {
         let words = line.split(u8::is_ascii_whitespace);
@@ -279,21 +253,8 @@ fn cell_value(cell: &[u8], decimal: u8) -> Option<f64> {
         return Some(value);
     }
     let bare = cell.strip_prefix(b"-").unwrap_or(cell);
-    let missing: [&[u8]; 9] = [
-        b"",
-        b"nan",
-        b"na",
-        b"n/a",
-        b"null",
-        b"none",
-        b"inf",
-        b"infinity",
-        b"1.#qnan",
-    ];
-    missing
-        .iter()
-        .any(|word| bare.eq_ignore_ascii_case(word))
-        .then_some(f64::NAN)
+    let missing: [&[u8]; 9] = [b"", b"nan", b"na", b"n/a", b"null", b"none", b"inf", b"infinity", b"1.#qnan"];
+    missing.iter().any(|word| bare.eq_ignore_ascii_case(word)).then_some(f64::NAN)
 }
 
 struct Layout {
@@ -312,13 +273,8 @@ fn data_width(line: &[u8], format: Format) -> Option<usize> {
     if cells.len() > 1 && cells.last().is_some_and(|c| c.is_empty()) {
         cells.pop();
     }
-    let values: Option<Vec<f64>> = cells
-        .iter()
-        .map(|c| cell_value(c, format.decimal))
-        .collect();
-    values
-        .filter(|v| v.iter().any(|x| x.is_finite()))
-        .map(|v| v.len())
+    let values: Option<Vec<f64>> = cells.iter().map(|c| cell_value(c, format.decimal)).collect();
+    values.filter(|v| v.iter().any(|x| x.is_finite())).map(|v| v.len())
 }
 
 /// Whether a line can be the second data line: as many cells, not all of them text. One bad cell
@@ -326,10 +282,7 @@ fn data_width(line: &[u8], format: Format) -> Option<usize> {
 fn may_follow(line: &[u8], format: Format, width: usize) -> bool {
     let cells = split(line, format.delimiter);
     let dangling = cells.len() == width + 1 && cells.last().is_some_and(|c| c.is_empty());
-    (cells.len() == width || dangling)
-        && cells[..width]
-            .iter()
-            .any(|c| cell_value(c, format.decimal).is_some())
+    (cells.len() == width || dangling) && cells[..width].iter().any(|c| cell_value(c, format.decimal).is_some())
 }
 
 fn find_layout(head: &[u8], complete: bool, options: &TextOptions) -> Option<Layout> {
@@ -356,18 +309,10 @@ fn find_layout(head: &[u8], complete: bool, options: &TextOptions) -> Option<Lay
         .flat_map(|delimiter| [b'.', b','].map(|decimal| Format { delimiter, decimal }))
         .filter(|f| f.delimiter != f.decimal)
         .filter(|f| options.delimiter.is_none_or(|d| d == f.delimiter))
-        .filter(|f| {
-            options
-                .decimal_comma
-                .is_none_or(|c| c == (f.decimal == b','))
-        })
+        .filter(|f| options.decimal_comma.is_none_or(|c| c == (f.decimal == b',')))
         .chain(options.delimiter.map(|delimiter| Format {
             delimiter,
-            decimal: if options.decimal_comma == Some(true) {
-                b','
-            } else {
-                b'.'
-            },
+            decimal: if options.decimal_comma == Some(true) { b',' } else { b'.' },
         }))
         .collect();
     let first = options.header_lines.unwrap_or(0);
@@ -383,19 +328,12 @@ fn find_layout(head: &[u8], complete: bool, options: &TextOptions) -> Option<Lay
         let Some((width, format)) = best else {
             continue;
         };
-        let next = lines[i + 1..]
-            .iter()
-            .find(|(_, l)| !is_blank(l) && comment(l).is_none());
+        let next = lines[i + 1..].iter().find(|(_, l)| !is_blank(l) && comment(l).is_none());
         if next.is_some_and(|(_, l)| !may_follow(l, format, width)) {
             continue;
         }
         let header: Vec<&[u8]> = lines[..i].iter().map(|(_, l)| *l).collect();
-        return Some(Layout {
-            offset: *offset,
-            line: i as u64 + 1,
-            format,
-            names: names(&header, format, width),
-        });
+        return Some(Layout { offset: *offset, line: i as u64 + 1, format, names: names(&header, format, width) });
     }
     None
 }
@@ -413,45 +351,27 @@ fn names(header: &[&[u8]], format: Format, width: usize) -> Vec<String> {
             cells.pop();
         }
         let full = cells.len() == width && cells.iter().any(|c| !c.is_empty());
-        full.then(|| {
-            cells
-                .iter()
-                .map(|c| String::from_utf8_lossy(c).into_owned())
-                .collect()
-        })
+        full.then(|| cells.iter().map(|c| String::from_utf8_lossy(c).into_owned()).collect())
     };
-    let mut candidates = header
-        .iter()
-        .rev()
-        .filter(|l| !is_blank(l))
-        .map(|l| cells(l));
+    let mut candidates = header.iter().rev().filter(|l| !is_blank(l)).map(|l| cells(l));
     let last = candidates.next().flatten();
     let chosen = match last {
-        Some(line) if line.iter().all(|c| is_unit(c)) => {
-            candidates.next().flatten().unwrap_or(line)
-        }
+        Some(line) if line.iter().all(|c| is_unit(c)) => candidates.next().flatten().unwrap_or(line),
         Some(line) => line,
         None => return numbered(width),
     };
     chosen
         .into_iter()
         .enumerate()
-        .map(|(i, name)| {
-            if name.is_empty() {
-                format!("channel {}", i + 1)
-            } else {
-                name
-            }
-        })
+        .map(|(i, name)| if name.is_empty() { format!("channel {}", i + 1) } else { name })
         .collect()
 }
 
 fn is_unit(cell: &str) -> bool {
-    let bracketed = (cell.starts_with('[') && cell.ends_with(']'))
-        || (cell.starts_with('(') && cell.ends_with(')'));
+    let bracketed = (cell.starts_with('[') && cell.ends_with(']')) || (cell.starts_with('(') && cell.ends_with(')'));
     let units = [
-        "", "-", "s", "ms", "us", "g", "v", "mv", "m/s2", "m/s^2", "mm/s", "m/s", "hz", "rpm",
-        "1/min", "um", "mm", "m", "n", "nm", "deg", "rad", "pa", "bar", "degc",
+        "", "-", "s", "ms", "us", "g", "v", "mv", "m/s2", "m/s^2", "mm/s", "m/s", "hz", "rpm", "1/min", "um", "mm",
+        "m", "n", "nm", "deg", "rad", "pa", "bar", "degc",
     ];
     bracketed || units.contains(&cell.to_ascii_lowercase().as_str())
 }

@@ -22,17 +22,10 @@ impl<R: Read> WavRecording<R> {
         if spec.channels == 0 || !(1..=32).contains(&spec.bits_per_sample) {
             return Err(ReadError::Format {
                 format: "WAV",
-                reason: format!(
-                    "{} channels of {} bits",
-                    spec.channels, spec.bits_per_sample
-                ),
+                reason: format!("{} channels of {} bits", spec.channels, spec.bits_per_sample),
             });
         }
-        Ok(Self {
-            names: numbered(spec.channels.into()),
-            frame: Vec::with_capacity(spec.channels.into()),
-            reader,
-        })
+        Ok(Self { names: numbered(spec.channels.into()), frame: Vec::with_capacity(spec.channels.into()), reader })
     }
 
     fn take<S: hound::Sample>(
@@ -65,10 +58,7 @@ impl<R: Read> WavRecording<R> {
 fn wav_error(error: hound::Error) -> ReadError {
     match error {
         hound::Error::IoError(e) => ReadError::Io(e),
-        other => ReadError::Format {
-            format: "WAV",
-            reason: other.to_string(),
-        },
+        other => ReadError::Format { format: "WAV", reason: other.to_string() },
     }
 }
 

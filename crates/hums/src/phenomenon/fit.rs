@@ -111,10 +111,7 @@ pub fn fit(difference: &[f64], rate: f64, options: &FitOptions) -> Result<Fit> {
     // Work on a signal of peak 1.
     let peak = crate::moments::peak(difference);
     if !(peak > 0.0) {
-        return Err(HumsError::Undefined {
-            what: WHAT,
-            reason: "the signal is zero everywhere",
-        });
+        return Err(HumsError::Undefined { what: WHAT, reason: "the signal is zero everywhere" });
     }
     let d: Vec<f64> = difference.iter().map(|x| x / peak).collect();
     let energy: f64 = d.iter().map(|x| x * x).sum();
@@ -136,10 +133,7 @@ pub fn fit(difference: &[f64], rate: f64, options: &FitOptions) -> Result<Fit> {
 }
 
 fn residual_energy(d: &[f64], rate: f64, model: &DampedSine) -> f64 {
-    d.iter()
-        .enumerate()
-        .map(|(i, x)| (x - model.value(i as f64 / rate)).powi(2))
-        .sum()
+    d.iter().enumerate().map(|(i, x)| (x - model.value(i as f64 / rate)).powi(2)).sum()
 }
 
 /// Best delay on a grid, with its amplitude; `None` when no amplitude has the sign asked for.
@@ -150,10 +144,7 @@ fn scan(d: &[f64], rate: f64, start: DampedSine, positive: bool) -> Option<Dampe
     let cells = ((duration / cell) as usize).min(1_000_000);
     let mut best: Option<(f64, DampedSine)> = None;
     for k in 0..cells + CELLS as usize {
-        let unit = DampedSine {
-            delay: (k as f64 - CELLS) * cell,
-            ..start
-        };
+        let unit = DampedSine { delay: (k as f64 - CELLS) * cell, ..start };
         let (amplitude, gain) = projection(d, rate, &unit);
         let allowed = amplitude.is_finite() && (!positive || amplitude > 0.0);
         if allowed && gain > best.as_ref().map_or(0.0, |b| b.0) {
@@ -176,10 +167,7 @@ fn projection(d: &[f64], rate: f64, unit: &DampedSine) -> (f64, f64) {
     }
     let tau = first as f64 / rate - unit.delay;
     let envelope = (-decay * tau).exp();
-    let (mut re, mut im) = (
-        envelope * (omega * tau).cos(),
-        envelope * (omega * tau).sin(),
-    );
+    let (mut re, mut im) = (envelope * (omega * tau).cos(), envelope * (omega * tau).sin());
     let shrink = (-decay / rate).exp();
     let (c, s) = (shrink * (omega / rate).cos(), shrink * (omega / rate).sin());
     let (mut dg, mut gg) = (0.0, 0.0);
@@ -188,20 +176,11 @@ fn projection(d: &[f64], rate: f64, unit: &DampedSine) -> (f64, f64) {
         gg += im * im;
         (re, im) = (re * c - im * s, re * s + im * c);
     }
-    if gg > 0.0 {
-        (dg / gg, dg * dg / gg)
-    } else {
-        (f64::NAN, 0.0)
-    }
+    if gg > 0.0 { (dg / gg, dg * dg / gg) } else { (f64::NAN, 0.0) }
 }
 
 /// Levenberg-Marquardt on (A, t_d, w_n, zeta), those that are free, each scaled to order 1.
-fn refine(
-    d: &[f64],
-    rate: f64,
-    start: DampedSine,
-    options: &FitOptions,
-) -> (DampedSine, FitStatus, usize) {
+fn refine(d: &[f64], rate: f64, start: DampedSine, options: &FitOptions) -> (DampedSine, FitStatus, usize) {
     let free = [true, true, options.free_frequency, options.free_damping];
     let mut model = start;
     let mut cost = residual_energy(d, rate, &model);
@@ -233,11 +212,7 @@ fn refine(
         let allowed = trial.validate().is_ok()
             && trial.natural_frequency < rate / 2.0
             && (!options.positive_amplitude || trial.amplitude > 0.0);
-        let trial_cost = if allowed {
-            residual_energy(d, rate, &trial)
-        } else {
-            f64::INFINITY
-        };
+        let trial_cost = if allowed { residual_energy(d, rate, &trial) } else { f64::INFINITY };
         let small = step.amax() < 1e-12;
         if trial_cost <= cost {
             (model, cost) = (trial, trial_cost);

@@ -112,10 +112,7 @@ impl ClosedForm {
         };
         let variance = central(2);
         if !(variance > 0.0) {
-            return Err(HumsError::Undefined {
-                what: WHAT,
-                reason: "the signal has no variance",
-            });
+            return Err(HumsError::Undefined { what: WHAT, reason: "the signal has no variance" });
         }
         let form = Self {
             mean,
@@ -125,10 +122,7 @@ impl ClosedForm {
             m6a: central(6) / variance.powi(3),
             m8a: central(8) / variance.powi(4),
         };
-        if [form.rms, form.fm4, form.m6a, form.m8a]
-            .iter()
-            .all(|v| v.is_finite())
-        {
+        if [form.rms, form.fm4, form.m6a, form.m8a].iter().all(|v| v.is_finite()) {
             Ok(form)
         } else {
             Err(HumsError::OutOfRange { what: WHAT })
@@ -144,11 +138,7 @@ impl DampedSine {
     pub fn validate(&self) -> Result<()> {
         for (parameter, value) in [("amplitude", self.amplitude), ("delay", self.delay)] {
             if !value.is_finite() {
-                return Err(HumsError::Parameter {
-                    parameter,
-                    value,
-                    allowed: "finite",
-                });
+                return Err(HumsError::Parameter { parameter, value, allowed: "finite" });
             }
         }
         require_positive("natural frequency", self.natural_frequency)?;
@@ -209,8 +199,7 @@ impl DampedSine {
     #[must_use]
     pub fn extremum(&self, i: usize) -> f64 {
         let root = self.root();
-        let first =
-            self.amplitude * root * (-(self.damping / root) * (root / self.damping).atan()).exp();
+        let first = self.amplitude * root * (-(self.damping / root) * (root / self.damping).atan()).exp();
         let k = i.max(1) - 1;
         let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
         sign * first * (-self.log_decrement() * k as f64 / 2.0).exp()
@@ -283,11 +272,7 @@ impl AmplitudeDensity {
         }
         require_positive("logarithmic decrement", delta)?;
         if !(1..=10_000_000).contains(&n) {
-            return Err(HumsError::Parameter {
-                parameter: "half cycles",
-                value: n as f64,
-                allowed: "1 to 10^7",
-            });
+            return Err(HumsError::Parameter { parameter: "half cycles", value: n as f64, allowed: "1 to 10^7" });
         }
         Ok(Self { first, delta, n })
     }
@@ -367,10 +352,7 @@ impl AmplitudeDensity {
     /// [`HumsError::OutOfRange`] for extrema near the limits of `f64`.
     pub fn indicators(&self) -> Result<ClosedForm> {
         // Standardised moments do not depend on the scale: compute them at A_1 = 1.
-        let unit = Self {
-            first: 1.0,
-            ..*self
-        };
+        let unit = Self { first: 1.0, ..*self };
         let form = ClosedForm::from_raw_moments(&unit.raw_moments())?;
         crate::error::finite_or_out_of_range("variance", form.variance * self.first * self.first)?;
         Ok(ClosedForm {
@@ -395,11 +377,7 @@ pub fn simplified_indicators(first_extremum: f64, delta: f64, n: f64) -> Result<
     require_positive("logarithmic decrement", delta)?;
     require_positive("half cycles", n)?;
     if !first_extremum.is_finite() {
-        return Err(HumsError::Parameter {
-            parameter: "first extremum",
-            value: first_extremum,
-            allowed: "finite",
-        });
+        return Err(HumsError::Parameter { parameter: "first extremum", value: first_extremum, allowed: "finite" });
     }
     let q = |p: f64| -(-p * delta).exp_m1();
     let variance = first_extremum * first_extremum / (2.0 * n * q(1.0));

@@ -36,10 +36,7 @@ impl Mode {
     #[must_use]
     pub fn pole(&self) -> Complex<f64> {
         let w = TAU * self.natural_frequency;
-        Complex::new(
-            -self.damping * w,
-            w * (1.0 - self.damping * self.damping).sqrt(),
-        )
+        Complex::new(-self.damping * w, w * (1.0 - self.damping * self.damping).sqrt())
     }
 
     /// Value at time t (s).
@@ -108,20 +105,9 @@ impl ModalResponse {
     fn integrals(&self, length: f64) -> [f64; 9] {
         let mut total = [0.0; 9];
         let half = |mode: &Mode| Complex::from_polar(mode.amplitude / 2.0, mode.phase);
-        let terms: Vec<_> = self
-            .modes
-            .iter()
-            .flat_map(|m| [(half(m), m.pole()), (half(m).conj(), m.pole().conj())])
-            .collect();
-        expand(
-            &terms,
-            0,
-            0,
-            Complex::new(1.0, 0.0),
-            Complex::new(0.0, 0.0),
-            length,
-            &mut total,
-        );
+        let terms: Vec<_> =
+            self.modes.iter().flat_map(|m| [(half(m), m.pole()), (half(m).conj(), m.pole().conj())]).collect();
+        expand(&terms, 0, 0, Complex::new(1.0, 0.0), Complex::new(0.0, 0.0), length, &mut total);
         let mut factorial = 1.0;
         for (p, sum) in total.iter_mut().enumerate() {
             factorial *= p.max(1) as f64;
@@ -145,30 +131,17 @@ impl ModalResponse {
             });
         }
         // Standardised moments do not depend on the scale: compute them near 1.
-        let scale = self
-            .modes
-            .iter()
-            .map(|m| m.amplitude.abs())
-            .fold(0.0, f64::max);
+        let scale = self.modes.iter().map(|m| m.amplitude.abs()).fold(0.0, f64::max);
         if !(scale > 0.0) {
-            return Err(HumsError::Undefined {
-                what: "closed-form indicator",
-                reason: "all modes have amplitude 0",
-            });
+            return Err(HumsError::Undefined { what: "closed-form indicator", reason: "all modes have amplitude 0" });
         }
         let mut unit = self.clone();
         unit.modes.iter_mut().for_each(|m| m.amplitude /= scale);
         let mut raw = unit.integrals(duration - delay).map(|x| x / duration);
         raw[0] = 1.0;
         let form = ClosedForm::from_raw_moments(&raw)?;
-        let variance =
-            crate::error::finite_or_out_of_range("variance", form.variance * scale * scale)?;
-        Ok(ClosedForm {
-            mean: form.mean * scale,
-            variance,
-            rms: form.rms * scale,
-            ..form
-        })
+        let variance = crate::error::finite_or_out_of_range("variance", form.variance * scale * scale)?;
+        Ok(ClosedForm { mean: form.mean * scale, variance, rms: form.rms * scale, ..form })
     }
 }
 
@@ -195,15 +168,7 @@ fn expand(
             product = product * c / m as f64;
             exponent += s;
         }
-        expand(
-            terms,
-            first + 1,
-            power + m,
-            product,
-            exponent,
-            length,
-            total,
-        );
+        expand(terms, first + 1, power + m, product, exponent, length, total);
     }
 }
 

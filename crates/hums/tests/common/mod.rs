@@ -19,23 +19,16 @@ pub fn gaussian(n: usize, seed: u64) -> Vec<f64> {
 
 pub fn uniform(n: usize, seed: u64) -> Vec<f64> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    (0..n)
-        .map(|_| (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64)
-        .collect()
+    (0..n).map(|_| (rng.next_u64() >> 11) as f64 / (1_u64 << 53) as f64).collect()
 }
 
 pub fn sine(n: usize, cycles: f64, amplitude: f64, phase: f64) -> Vec<f64> {
-    (0..n)
-        .map(|i| amplitude * (TAU * cycles * i as f64 / n as f64 + phase).sin())
-        .collect()
+    (0..n).map(|i| amplitude * (TAU * cycles * i as f64 / n as f64 + phase).sin()).collect()
 }
 
 pub fn max_difference(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
-    a.iter()
-        .zip(b)
-        .map(|(x, y)| (x - y).abs())
-        .fold(0.0, f64::max)
+    a.iter().zip(b).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
 }
 
 #[track_caller]

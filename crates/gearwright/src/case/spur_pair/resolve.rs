@@ -9,9 +9,9 @@ use gear_geom::{
     ProfileRelief, ToothThickness,
 };
 
-use super::document::Node;
-use super::fault::Fault;
 use super::schema::{FilletShape, Form, Gear, HubCondition, Model, Modification, ReliefShape, Solver, SpurPair};
+use crate::case::document::Node;
+use crate::case::fault::Fault;
 
 const MM: f64 = 1e-3;
 const UM: f64 = 1e-6;

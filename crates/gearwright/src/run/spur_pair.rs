@@ -1,0 +1,150 @@
+//! Statics of a spur gear pair.
+
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::{Context, anyhow};
+use fecm::statics::{PairModel, PositionResult, StaticsRequest, StaticsSeries};
+
+use crate::case::SpurPairCase;
+use crate::output::folder::ResultsFolder;
+use crate::output::{geometry, summary, tables};
+use crate::plot::statics as figures;
+
+use super::{AsObserver, Finished, RunObserver};
+
+/// Runs a spur-pair case into `target`.
+///
+/// # Errors
+/// Model errors, and anything the file system says. Nothing is left at `target` then.
+pub fn run(case: &SpurPairCase, target: &Path, observer: &dyn RunObserver) -> anyhow::Result<Finished> {
+    let folder = ResultsFolder::create(target)?;
+    let mut times = summary::Times::default();
+    observer.stage("condensing both gears");
+    let model = PairModel::new(&case.pair, &case.options).context("the gears cannot be modelled")?;
+    let stats = model.stats();
+    times.condensation = stats.condensation_time.as_secs_f64();
+
+    observer.stage("contact over the mesh cycle");
+    let request = StaticsRequest {
+        mesh_cycles: case.mesh_cycles.clone(),
+        torques: vec![case.inputs.load.torque_n_m],
+        stiffness_difference: case.inputs.analysis.stiffness_by_differences,
+        keep_pressure: true,
+    };
+    let solved = model.solve(&request, &AsObserver(observer)).context("the contact cannot be solved")?;
+    times.contact = solved.time.as_secs_f64();
+    let series = solved.results.first().ok_or_else(|| anyhow!("no positions were solved"))?;
+
+    let map = if case.map_torques.is_empty() {
+        None
+    } else {
+        observer.stage("force-deflection map");
+        let request = StaticsRequest {
+            mesh_cycles: case.mesh_cycles.clone(),
+            torques: case.map_torques.clone(),
+            stiffness_difference: false,
+            keep_pressure: false,
+        };
+        let map = model.solve(&request, &AsObserver(observer)).context("the force-deflection map cannot be solved")?;
+        times.map = map.time.as_secs_f64();
+        Some(map)
+    };
+
+    observer.stage("writing results");
+    let started = Instant::now();
+    let results = summary::results(series, case.inputs.analysis.mesh_cycle_origin);
+    write_tables(case, &folder, series, map.as_ref())?;
+    if case.inputs.output.vtu {
+        write_grids(case, &folder, &model, series)?;
+    }
+    if case.inputs.output.plots {
+        draw(case, &folder, series, map.as_ref(), stats.symmetric)?;
+    }
+    times.output = started.elapsed().as_secs_f64();
+    let all: Vec<&StaticsSeries> = std::iter::once(&solved).chain(map.as_ref()).collect();
+    let whole = summary::Summary {
+        program: "gearwright",
+        version: env!("CARGO_PKG_VERSION"),
+        inputs: &case.inputs,
+        geometry: summary::geometry(&case.pair),
+        results: results.clone(),
+        work: summary::work(&stats, &all),
+        time_s: times,
+    };
+    std::fs::write(folder.file("summary.json"), serde_json::to_string_pretty(&whole)?)?;
+    let screen = summary::screen(case, &results, &stats, &times);
+    let unusable = all.iter().flat_map(|s| s.results.iter().flatten()).filter(|r| !r.status.is_usable()).count();
+    Ok(Finished { folder: folder.publish()?, screen, unusable })
+}
+
+fn write_tables(
+    case: &SpurPairCase,
+    folder: &ResultsFolder,
+    series: &[PositionResult],
+    map: Option<&StaticsSeries>,
+) -> anyhow::Result<()> {
+    let origin = case.inputs.analysis.mesh_cycle_origin;
+    tables::series(&folder.file("series.csv"), series, origin)?;
+    if let Some(map) = map {
+        tables::force_deflection(&folder.file("force_deflection.csv"), &map.results, origin)?;
+    }
+    Ok(())
+}
+
+/// The position to show: the one asked for, or the largest transmission error.
+fn snapshot<'a>(case: &SpurPairCase, series: &'a [PositionResult]) -> Option<&'a PositionResult> {
+    let origin = case.inputs.analysis.mesh_cycle_origin;
+    match case.inputs.output.snapshot_mesh_cycle {
+        Some(wanted) => {
+            let distance = |r: &PositionResult| (r.mesh_cycle + origin - wanted).abs();
+            series.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+        }
+        None => series.iter().max_by(|a, b| a.static_transmission_error.total_cmp(&b.static_transmission_error)),
+    }
+}
+
+fn write_grids(
+    case: &SpurPairCase,
+    folder: &ResultsFolder,
+    model: &PairModel,
+    series: &[PositionResult],
+) -> anyhow::Result<()> {
+    let Some(position) = snapshot(case, series) else { return Ok(()) };
+    let (pinion, wheel) = rayon::join(|| geometry::body(model, position, 0), || geometry::body(model, position, 1));
+    pinion?.write(&folder.file("pinion.vtu"))?;
+    wheel?.write(&folder.file("gear.vtu"))?;
+    geometry::pressure(model, position).write(&folder.file("contact_pressure.vtu"))?;
+    Ok(())
+}
+
+fn draw(
+    case: &SpurPairCase,
+    folder: &ResultsFolder,
+    series: &[PositionResult],
+    map: Option<&StaticsSeries>,
+    mirrored: bool,
+) -> anyhow::Result<()> {
+    let origin = case.inputs.analysis.mesh_cycle_origin;
+    let title = case.inputs.title.as_str();
+    let file = |name: &str| folder.file(name);
+    let save = |chart: crate::plot::Chart, name: &str| chart.save(&file, name).map_err(|e| anyhow!("plot {name}: {e}"));
+    save(figures::transmission_error(title, series, origin), "transmission_error")?;
+    save(figures::mesh_stiffness(title, series, origin), "mesh_stiffness")?;
+    save(figures::per_pair(title, "Force on the tooth pair (N)", series, origin, |p| p.force), "tooth_forces")?;
+    save(figures::per_pair(title, "Share of the load", series, origin, |p| p.share), "load_sharing")?;
+    save(
+        figures::per_pair(title, "Tooth-pair stiffness (N/µm)", series, origin, |p| p.stiffness * 1e-6),
+        "tooth_pair_stiffness",
+    )?;
+    save(figures::per_pair(title, "Peak pressure (MPa)", series, origin, |p| p.peak_pressure * 1e-6), "peak_pressure")?;
+    save(figures::per_pair(title, "Contact width (mm)", series, origin, |p| p.contact_width * 1e3), "contact_width")?;
+    if let Some(map) = figures::flank_pressure("Largest pressure on the pinion flank", series, &case.pair, mirrored) {
+        map.save(&file, "flank_pressure").map_err(|e| anyhow!("plot flank_pressure: {e}"))?;
+    }
+    if let Some(map) = map {
+        save(figures::torque_curves(title, &map.results, origin), "transmission_error_by_torque")?;
+        save(figures::force_deflection(title, &map.results, origin), "force_deflection")?;
+    }
+    Ok(())
+}
