@@ -23,7 +23,7 @@ enum Command {
     },
     /// Static transmission error against CalculiX (program `ccx`, Debian package calculix-ccx); writes docs/reports/calculix.md.
     PeerCalculix,
-    /// Error against run time; writes docs/reports/work-precision-<study>.md and plots.
+    /// Error against run time; writes docs/reports/work-precision-STUDY.md and plots.
     WorkPrecision {
         /// What to study.
         #[arg(value_enum)]

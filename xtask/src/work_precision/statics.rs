@@ -85,7 +85,7 @@ fn scenes() -> anyhow::Result<Vec<Scene>> {
         }
         reference.contact.cells_per_half_width = if solid { 12.0 } else { 40.0 };
         if solid {
-            reference.contact.face_cells = 64;
+            reference.contact.face_cells = 96;
             reference.face = FaceModel::Solid { order: 12 };
         }
         scenes.push(Scene {
