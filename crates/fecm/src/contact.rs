@@ -155,19 +155,17 @@ impl ContactGrid {
         let mut total = Mat::zeros(self.size(), self.size());
         let starts = self.starts();
         for (index, body) in bodies.iter().enumerate() {
-            let stations = self.stations(body, index)?;
+            let stations = self.stations(body, index, tooth_step[index])?;
             for (family_index, family) in body.families.iter().enumerate() {
                 let functions = family.basis.plane_degrees().len();
                 let values: Vec<Vec<f64>> = self.face.centres.iter().map(|&z| family.basis.plane_values(z)).collect();
                 let psi = Mat::from_fn(count, functions, |j, k| values[j][k]);
                 for (i, observed) in self.pairs.iter().enumerate() {
                     for (j, loaded) in self.pairs.iter().enumerate().skip(i) {
-                        let mut modal = if i == j {
-                            body.own_compliance(family_index, &stations[i])
-                        } else {
-                            let offset = (observed.pair - loaded.pair) * tooth_step[index];
-                            body.cross_compliance(family_index, offset, &stations[i], &stations[j])
-                        };
+                        let tooth = |pair: &PairGrid| pair.pair * tooth_step[index];
+                        let (own, source) = (&stations[i], &stations[j]);
+                        let mut modal =
+                            body.compliance(family_index, (tooth(observed), own.as_slice()), (tooth(loaded), source));
                         if i == j {
                             subtract_depth(&mut modal, functions, |d| near.depth(index, family_index, d));
                         }
@@ -193,10 +191,11 @@ impl ContactGrid {
             .collect()
     }
 
-    fn stations(&self, body: &GearBody, index: usize) -> Result<Vec<Vec<Station>>, FecmError> {
+    fn stations(&self, body: &GearBody, index: usize, tooth_step: i32) -> Result<Vec<Vec<Station>>, FecmError> {
         let of_pair = |pair: &PairGrid| {
             let roll = |row: &OpposedPoints| if index == 0 { row.pinion_roll } else { row.wheel_roll };
-            pair.rows.iter().map(|row| body.station(roll(row))).collect()
+            let sector = body.sector(pair.pair * tooth_step);
+            pair.rows.iter().map(|row| sector.station(roll(row))).collect()
         };
         self.pairs.iter().map(of_pair).collect()
     }

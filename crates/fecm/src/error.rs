@@ -8,6 +8,16 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum FecmError {
+    /// A root crack that cannot be.
+    #[error("root crack: {what} = {value:.6} is not possible; allowed: {allowed}")]
+    Crack {
+        /// Which of its parameters.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        allowed: String,
+    },
     /// An option is outside its range.
     #[error("{name} = {value} is not allowed: {allowed}")]
     Option {

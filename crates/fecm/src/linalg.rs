@@ -85,6 +85,13 @@ pub fn symmetrise(a: &mut Mat<f64>) {
     }
 }
 
+/// `a^-1 b` for a square, not symmetric `a`, by elimination with partial pivoting.
+#[must_use]
+pub fn solve_general(a: &Mat<f64>, b: &Mat<f64>) -> Mat<f64> {
+    use faer::linalg::solvers::Solve as _;
+    a.partial_piv_lu().solve(b)
+}
+
 /// A dense symmetric positive definite matrix, factored.
 pub struct DenseCholesky {
     factor: Mat<f64>,

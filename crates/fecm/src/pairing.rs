@@ -1,6 +1,6 @@
 //! Tooth pairs of a gear pair in space, as the contact search needs them.
 
-use gear_geom::{FlankSide, Gear, GearPair, Member};
+use gear_geom::{Damage, FlankSide, Gear, GearPair, Member, Pit, ToothDamage};
 
 use crate::profile::FlankProfile;
 use crate::search::{OpposedPoints, PlacedFlank, PlacedPair, Placement};
@@ -17,6 +17,8 @@ pub struct Pairing {
     pair: GearPair,
     profiles: [FlankProfile; 2],
     is_modified: bool,
+    /// Pits of the pinion and of the wheel, by tooth in `0..teeth`.
+    pits: [Vec<(i64, Pit)>; 2],
 }
 
 /// Unloaded gears at first touch.
@@ -47,7 +49,23 @@ impl Pairing {
             pair: pair.clone(),
             profiles: MEMBERS.map(|member| FlankProfile::new(pair.gear(member))),
             is_modified: MEMBERS.iter().any(|&member| pair.gear(member).is_modified()),
+            pits: [Vec::new(), Vec::new()],
         }
+    }
+
+    /// The same pair with pits on its flanks.
+    #[must_use]
+    pub fn with_damage(mut self, damage: &[Vec<ToothDamage>; 2]) -> Self {
+        for (index, list) in damage.iter().enumerate() {
+            let teeth = i64::from(self.gear(index).teeth());
+            let pits = list.iter().filter_map(|damage| match &damage.damage {
+                Damage::Pit(pit) => Some((damage.tooth.rem_euclid(teeth), pit.clone())),
+                Damage::Crack(_) => None,
+            });
+            self.pits[index] = pits.collect();
+        }
+        self.is_modified |= self.pits.iter().any(|pits| !pits.is_empty());
+        self
     }
 
     /// The gear pair.
@@ -143,9 +161,19 @@ impl Pairing {
     #[must_use]
     pub fn material_removed(&self, pair: i32, row: &OpposedPoints, z: f64) -> f64 {
         let rolls = [row.pinion_roll, row.wheel_roll];
+        // a gap that no load closes: positions count as overloaded at a quarter of this deflection
+        let never = self.pair.base_pitch();
         let of = |index: usize| {
             let tooth = i64::from(pair) * i64::from(self.tooth_steps()[index]);
-            self.gear(index).material_removed(tooth, rolls[index], z)
+            let gear = self.gear(index);
+            let mut removed = gear.material_removed(tooth, rolls[index], z);
+            if !self.pits[index].is_empty() {
+                let own = tooth.rem_euclid(i64::from(gear.teeth()));
+                let here =
+                    self.pits[index].iter().filter(|(pitted, pit)| *pitted == own && pit.contains(z, rolls[index]));
+                removed += here.map(|(_, pit)| pit.depth.unwrap_or(never)).sum::<f64>();
+            }
+            removed
         };
         of(0) + of(1)
     }

@@ -128,3 +128,66 @@ pub fn cyclic_cut_compliance(sector: &Arc, teeth: usize, reach: usize) -> Result
     }
     Ok(all)
 }
+
+/// Displacements of all cuts of a ring of sectors with cut stiffness `sectors[k]` under loads on the cuts, cut `k` below sector `k`: block
+/// elimination around the ring (the last cut is kept to the end, so the system stays banded).
+///
+/// # Errors
+/// [`FecmError::NotPositiveDefinite`] if the ring is not held.
+pub fn solve_ring(sectors: &[&Mat<f64>], loads: &[Mat<f64>]) -> Result<Vec<Mat<f64>>, FecmError> {
+    let count = sectors.len();
+    let n = sectors.first().map_or(0, |s| s.nrows() / 2);
+    let part = |k: usize, row: usize, column: usize| sectors[k].as_ref().submatrix(row * n, column * n, n, n);
+    let last = count - 1;
+    // forward: cut k in terms of cuts k + 1 and `last`: u_k = -next_k u_{k+1} - end_k u_last + free_k
+    let (mut next, mut end, mut free) = (Vec::new(), Vec::new(), Vec::new());
+    // what eliminated cuts leave on the present one, on the last, and between the last (row) and the present one
+    let mut own = Mat::<f64>::zeros(n, n);
+    let mut to_last = part(last, 0, 1).to_owned();
+    let mut at_last = part(last, 0, 0) + part(last - 1, 1, 1);
+    let mut load = loads[0].clone();
+    let mut load_last = loads[last].clone();
+    own += part(0, 0, 0) + part(last, 1, 1);
+    for k in 0..last {
+        let factor = DenseCholesky::new(own.clone(), "ring cut")?;
+        // the step before the last couples to it twice: as the next cut and as the one kept
+        let is_before_last = k + 1 == last;
+        let mut along = if is_before_last { Mat::zeros(n, n) } else { part(k, 0, 1).to_owned() };
+        let mut across = to_last.transpose().to_owned();
+        if is_before_last {
+            across += part(k, 0, 1);
+            to_last += part(k, 1, 0);
+        }
+        let coupling = along.clone();
+        factor.solve_in_place(along.as_mut());
+        factor.solve_in_place(across.as_mut());
+        let mut moved = load.clone();
+        factor.solve_in_place(moved.as_mut());
+        at_last -= &to_last * &across;
+        load_last -= &to_last * &moved;
+        if !is_before_last {
+            own = part(k, 1, 1) + part(k + 1, 0, 0);
+            own -= coupling.transpose() * &along;
+            let after = -(&to_last * &along);
+            load = loads[k + 1].clone();
+            load -= coupling.transpose() * &moved;
+            to_last = after;
+        }
+        next.push(along);
+        end.push(across);
+        free.push(moved);
+    }
+    let mut cuts = vec![Mat::<f64>::zeros(n, 1); count];
+    DenseCholesky::new(at_last, "ring")?.solve_in_place(load_last.as_mut());
+    cuts[last] = load_last;
+    for k in (0..last).rev() {
+        let mut cut = free[k].clone();
+        cut -= &end[k] * &cuts[last];
+        if k + 1 < last {
+            let ahead = cuts[k + 1].clone();
+            cut -= &next[k] * &ahead;
+        }
+        cuts[k] = cut;
+    }
+    Ok(cuts)
+}

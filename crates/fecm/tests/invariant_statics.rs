@@ -50,18 +50,18 @@ fn close(a: f64, b: f64, tolerance: f64, what: &str) {
 fn hub_reaction(model: &PairModel, position: &PositionResult, member: usize, stiffness: f64, width: f64) -> [f64; 3] {
     let body = &model.bodies()[member];
     let field = model.deformation(position, member).unwrap();
-    let order = body.sector.mesh.order;
+    let order = body.sector(0).shape.mesh.order;
     let line = LagrangeBasis::new(order);
     let (mut shapes, mut slopes) = (vec![0.0; order + 1], vec![0.0; order + 1]);
-    let teeth = (std::f64::consts::TAU / body.sector.sector_angle).round() as usize;
+    let teeth = (std::f64::consts::TAU / body.sector_angle()).round() as usize;
     let mut total = [0.0; 3];
     for sector in 0..teeth {
-        let turn = Rotation2::new(body.sector.sector_angle * sector as f64);
-        for edge in &body.sector.rim {
+        let turn = Rotation2::new(body.sector_angle() * sector as f64);
+        for edge in &body.sector(0).shape.rim {
             for (xi, weight) in gauss_rule(order + 2) {
                 line.values_into(xi, &mut shapes);
                 line.derivatives_into(xi, &mut slopes);
-                let points = edge.iter().map(|&n| turn * body.sector.mesh.nodes[n as usize].coords);
+                let points = edge.iter().map(|&n| turn * body.sector(0).shape.mesh.nodes[n as usize].coords);
                 let (mut place, mut tangent) = (Vector2::zeros(), Vector2::zeros());
                 for ((point, shape), slope) in points.zip(&shapes).zip(&slopes) {
                     place += point * *shape;
@@ -89,11 +89,11 @@ fn contact_load(model: &PairModel, position: &PositionResult, member: usize, mir
     let step = model.pairing().tooth_steps()[member];
     let mut total = [0.0; 3];
     for patch in &position.patches {
-        let turn = Rotation2::new(body.sector.sector_angle * f64::from(patch.pair * step));
+        let turn = Rotation2::new(body.sector_angle() * f64::from(patch.pair * step));
         let rolls = if member == 0 { &patch.pinion_roll } else { &patch.wheel_roll };
         let area = patch.cell[0] * patch.cell[1] * if mirrored { 2.0 } else { 1.0 };
         for (roll, pressures) in rolls.iter().zip(&patch.pressure) {
-            let (place, normal) = body.flank_point(*roll);
+            let (place, normal) = body.sector(0).flank_point(*roll);
             let (place, force) = (turn * place.coords, turn * normal * (-pressures.iter().sum::<f64>() * area));
             total[0] += force.x;
             total[1] += force.y;

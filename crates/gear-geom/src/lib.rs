@@ -39,6 +39,7 @@
     warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)
 )]
 
+pub mod damage;
 pub mod error;
 pub mod fillet;
 pub mod gear;
@@ -47,6 +48,7 @@ pub mod modification;
 pub mod outline;
 pub mod pair;
 
+pub use damage::{CrackLength, Damage, Pit, PitShape, RootCrack, ToothDamage};
 pub use error::{GeometryError, GeometryErrors};
 pub use fillet::{Fillet, FilletSpec};
 pub use gear::{FlankSide, Gear, GearKind, GearSpec, ToothThickness};

@@ -86,7 +86,7 @@ pub fn run() -> anyhow::Result<()> {
 
 fn gearwright_answer(case: &SpurPairCase, mesh_cycle: f64) -> anyhow::Result<(Answer, PositionResult)> {
     let started = Instant::now();
-    let options = fecm::statics::PairModelOptions { face: FaceModel::PlaneStrain, ..case.options };
+    let options = fecm::statics::PairModelOptions { face: FaceModel::PlaneStrain, ..case.options.clone() };
     let model = PairModel::new(&case.pair, &options)?;
     let torques = vec![case.inputs.load.torque_n_m];
     let request =

@@ -78,7 +78,7 @@ fn scenes() -> anyhow::Result<Vec<Scene>> {
         ("nonunity-pair-modified.toml", "statics-modified", "nonunity pair with relief and crown, 3-D"),
     ] {
         let case = case::load_spur_pair(&configs.join(file))?;
-        let mut reference = case.options;
+        let mut reference = case.options.clone();
         let solid = matches!(case.options.face, FaceModel::Solid { .. });
         for member in [&mut reference.pinion, &mut reference.wheel] {
             (member.mesh.order, member.mesh.density) = if solid { (5, 1.6) } else { (6, 3.0) };
@@ -104,7 +104,7 @@ fn scenes() -> anyhow::Result<Vec<Scene>> {
 fn choices(scene: &Scene) -> Vec<(String, String, PairModelOptions)> {
     let mut all = Vec::new();
     let mut add = |family: &str, setting: String, change: &dyn Fn(&mut PairModelOptions)| {
-        let mut options = scene.default;
+        let mut options = scene.default.clone();
         change(&mut options);
         all.push((family.to_owned(), setting, options));
     };

@@ -5,7 +5,7 @@
 //! ```text
 //!            E- --- tip --- E+            tooth block: flank to flank
 //!             |    tooth    |
-//!   M- --- J- \_____chord__/ J+ --- M+    chord: also where a root crack runs
+//!   M- --- J- \_____chord__/ J+ --- M+    chord: also where a root crack runs (its nodes doubled up to the tip)
 //!    | side |     body      | side |
 //!   B- ---- K- ----------- K+ ---- B+     rim: bore, or the outside of a ring
 //! ```
@@ -14,7 +14,7 @@
 
 use std::f64::consts::FRAC_PI_3;
 
-use gear_geom::{FlankSide, Gear, GearKind, HalfToothOutline, OutlineSegment};
+use gear_geom::{CrackLength, FlankSide, Gear, GearKind, HalfToothOutline, OutlineSegment, RootCrack};
 use nalgebra::{Point2, Rotation2, Vector2};
 
 use super::blocks::{BlockElements, BlockMesher, Edge, Vertex, geometric_breaks};
@@ -86,6 +86,19 @@ pub struct SectorMesh {
     pub flanks: [FlankEdge; 2],
     /// Elements of the tooth block.
     pub tooth_elements: Vec<u32>,
+    /// Root crack, if the tooth has one.
+    pub crack: Option<CrackFaces>,
+}
+
+/// The two faces of a crack in the mesh.
+#[derive(Debug, Clone)]
+pub struct CrackFaces {
+    /// Nodes from the mouth to the tip, on the face toward the tooth and on the face toward the body; both end in the same tip node.
+    pub nodes: [Vec<u32>; 2],
+    /// Length along the path (m).
+    pub length: f64,
+    /// Length of the whole chord from fillet to fillet (m).
+    pub chord: f64,
 }
 
 impl SectorMesh {
@@ -94,8 +107,22 @@ impl SectorMesh {
     /// # Errors
     /// [`FecmError::Option`] for densities out of range, [`FecmError::InvertedElement`] when the blocks do not fit the tooth form.
     pub fn new(gear: &Gear, density: &MeshDensity, body: &'static str) -> Result<Self, FecmError> {
+        Self::with_crack(gear, density, None, body)
+    }
+
+    /// Meshes a sector whose tooth may have a root crack, along the crack's path.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; [`FecmError::Crack`] for a crack that does not start on the fillet or leaves the tooth.
+    pub fn with_crack(
+        gear: &Gear,
+        density: &MeshDensity,
+        crack: Option<&RootCrack>,
+        body: &'static str,
+    ) -> Result<Self, FecmError> {
         density.validate()?;
-        let sector = SectorBuilder::new(gear, density).build();
+        let crack = crack.filter(|crack| !crack.is_empty());
+        let sector = SectorBuilder::new(gear, density, crack).build()?;
         sector.mesh.check(&ReferenceQuad::new(density.order), body)?;
         Ok(sector)
     }
@@ -140,6 +167,8 @@ struct Half {
     /// Along the rim, from below the junction to the cut.
     rim: Edge,
     junction: Vertex,
+    /// Where the flank starts: the junction, or its double at the mouth of a crack.
+    mouth: Vertex,
     tip: Vertex,
     rim_vertex: Vertex,
     junction_point: Point2<f64>,
@@ -159,12 +188,14 @@ struct SectorBuilder<'a> {
     /// +1 when the tooth points away from the axis.
     outward: f64,
     involute_breaks: Vec<f64>,
+    crack: Option<&'a RootCrack>,
     mesher: BlockMesher,
 }
 
 impl<'a> SectorBuilder<'a> {
-    fn new(gear: &'a Gear, density: &'a MeshDensity) -> Self {
+    fn new(gear: &'a Gear, density: &'a MeshDensity, crack: Option<&'a RootCrack>) -> Self {
         Self {
+            crack,
             gear,
             density,
             outline: gear.half_tooth_outline(),
@@ -176,17 +207,18 @@ impl<'a> SectorBuilder<'a> {
         }
     }
 
-    fn build(mut self) -> SectorMesh {
+    fn build(mut self) -> Result<SectorMesh, FecmError> {
         self.involute_breaks = self.equal_arc_breaks(self.density.count(8.0));
         // counter-clockwise: the lower half first when teeth point outward, the upper half first otherwise
-        let first = self.half(-self.outward);
-        let second = self.half(self.outward);
-        let across = self.across_breaks();
-        let chord = self.chord(&first, &second, &across);
+        let first = self.half(-self.outward)?;
+        let second = self.half(self.outward)?;
+        let path = ChordPath::new(self.crack, &first, &second, self.outward)?;
+        let across = self.across_breaks(&path);
+        let (above, below, crack) = self.chord(&path, &first, &second, &across);
         let tip = self.tip_edge(&first, &second, &across);
         let rim = self.rim_edge(&first, &second, &across);
-        let tooth = self.mesher.block(&first.flank, &second.flank, &chord, &tip);
-        self.mesher.block(&first.column, &second.column, &rim, &chord);
+        let tooth = self.mesher.block(&first.flank, &second.flank, &above, &tip);
+        self.mesher.block(&first.column, &second.column, &rim, &below);
         self.mesher.block(&second.column, &second.cut, &second.rim, &second.root);
         self.mesher.block(&first.cut, &first.column, &first.rim.reversed(), &first.root.reversed());
         let rim_edges = [&first.rim, &rim, &second.rim].map(|edge| self.split(edge)).concat();
@@ -195,7 +227,8 @@ impl<'a> SectorBuilder<'a> {
         let cuts = [&first.cut, &second.cut].map(|cut| cut.nodes().to_vec());
         let ([lower_flank, upper_flank], [lower_cut, upper_cut]) =
             if self.outward > 0.0 { (flanks, cuts) } else { (reverse(flanks), reverse(cuts)) };
-        SectorMesh {
+        Ok(SectorMesh {
+            crack,
             sector_angle: 2.0 * self.half_angle,
             lower_cut,
             upper_cut,
@@ -203,7 +236,7 @@ impl<'a> SectorBuilder<'a> {
             flanks: [lower_flank, upper_flank],
             tooth_elements: flatten(tooth),
             mesh: self.mesher.finish(),
-        }
+        })
     }
 
     /// Involute arc lengths that divide the involute in equal parts, from the fillet to the tip.
@@ -217,27 +250,45 @@ impl<'a> SectorBuilder<'a> {
         (0..=count).map(|k| start + (end - start) * k as f64 / count as f64).collect()
     }
 
-    /// Fractions across the tooth, finer at the flanks.
-    fn across_breaks(&self) -> Vec<f64> {
-        let half = geometric_breaks(self.density.count(3.0), 1.5);
-        let lower = half.iter().map(|b| 0.5 * b);
-        let upper = half.iter().rev().skip(1).map(|b| 1.0 - 0.5 * b);
-        lower.chain(upper).collect()
+    /// Fractions across the tooth: finer at the flanks, and at the tip of a crack.
+    fn across_breaks(&self, path: &ChordPath) -> Vec<f64> {
+        let Some(tip) = path.crack_tip else {
+            let half = geometric_breaks(self.density.count(3.0), 1.5);
+            let lower = half.iter().map(|b| 0.5 * b);
+            let upper = half.iter().rev().skip(1).map(|b| 1.0 - 0.5 * b);
+            return lower.chain(upper).collect();
+        };
+        // a part of the chord as long as the whole would have 8 elements, half of them graded toward the tip
+        let part = |length: f64| {
+            let count = self.density.count((2.0 + 6.0 * length).round());
+            geometric_breaks(count, 1.7).into_iter().map(move |b| b * length)
+        };
+        let before: Vec<f64> = part(tip).map(|b| tip - b).collect();
+        let after = part(1.0 - tip).skip(1).map(|b| tip + b);
+        before.into_iter().rev().chain(after).collect()
     }
 
-    fn half(&mut self, sign: f64) -> Half {
+    fn half(&mut self, sign: f64) -> Result<Half, FecmError> {
         let mirror = move |p: Point2<f64>| Point2::new(p.x, sign * p.y);
         let outline = self.outline.clone();
         let (rim_radius, half_angle) = (self.rim_radius, self.half_angle);
         let on_rim = move |angle: f64| Point2::new(rim_radius * angle.cos(), rim_radius * angle.sin());
-        let fillet_path = OutlinePath::new(&outline, &[(OutlineSegment::Fillet, 0.0, 1.0)]);
-        let (_, junction_u) = fillet_path.locate(0.5);
+        let crack = self.crack.filter(|crack| crack.side.sign() == sign);
+        let middle_u = OutlinePath::new(&outline, &[(OutlineSegment::Fillet, 0.0, 1.0)]).locate(0.5).1;
+        let junction_u = match crack.and_then(|crack| crack.start_tangent) {
+            Some(angle) => fillet_at_tangent(&outline, angle)?,
+            None => middle_u,
+        };
         let at_junction = outline.point(OutlineSegment::Fillet, junction_u);
         let up = outline.tangent(OutlineSegment::Fillet, junction_u);
-        let rim_angle = half_angle * (at_junction.y.atan2(at_junction.x) / half_angle).clamp(0.4, 0.75);
+        // the cut and the rim are those of every sector of the gear, wherever a crack starts
+        let usual = outline.point(OutlineSegment::Fillet, middle_u);
+        let rim_angle = half_angle * (usual.y.atan2(usual.x) / half_angle).clamp(0.4, 0.75);
         let space_point = outline.point(OutlineSegment::RootLand, 0.0);
 
         let junction = self.mesher.vertex(mirror(at_junction));
+        // the mouth of a crack parts tooth and body
+        let mouth = if crack.is_some() { self.mesher.vertex(mirror(at_junction)) } else { junction };
         let fillet_end = self.mesher.vertex(mirror(outline.point(OutlineSegment::Flank, 0.0)));
         let tip = self.mesher.vertex(mirror(outline.point(OutlineSegment::Flank, 1.0)));
         let space = self.mesher.vertex(mirror(space_point));
@@ -246,7 +297,7 @@ impl<'a> SectorBuilder<'a> {
 
         let upper_fillet = OutlinePath::new(&outline, &[(OutlineSegment::Fillet, junction_u, 1.0)]);
         let fillet_breaks = even_breaks(self.density.count(3.0));
-        let fillet = self.mesher.edge(junction, fillet_end, &fillet_breaks, |t| mirror(upper_fillet.point(t)));
+        let fillet = self.mesher.edge(mouth, fillet_end, &fillet_breaks, |t| mirror(upper_fillet.point(t)));
         let breaks = self.involute_breaks.clone();
         let base = self.gear.base_radius();
         let involute =
@@ -254,7 +305,7 @@ impl<'a> SectorBuilder<'a> {
 
         // from the rim inward to the junction and to mid-space, elements shrinking toward the tooth
         let foot = on_rim(rim_angle);
-        let radial_breaks = self.radial_breaks((at_junction - foot).norm());
+        let radial_breaks = self.radial_breaks((usual - foot).norm());
         let direction = Rotation2::new(-self.outward * FRAC_PI_3 * 2.0) * up;
         let reach = (0.5 * (at_junction - foot).norm()).min(0.6 * self.gear.module());
         let bend = at_junction + direction * reach;
@@ -272,8 +323,9 @@ impl<'a> SectorBuilder<'a> {
         let rim = self
             .mesher
             .edge(rim_vertex, rim_cut, &side_breaks, |t| mirror(on_rim(rim_angle + t * (half_angle - rim_angle))));
-        Half {
+        Ok(Half {
             flank: fillet.joined(&involute),
+            mouth,
             involute,
             column,
             root,
@@ -286,7 +338,7 @@ impl<'a> SectorBuilder<'a> {
             rim_angle: sign * rim_angle,
             up: Vector2::new(up.x, sign * up.y),
             sign,
-        }
+        })
     }
 
     /// Fractions from the rim to the junction: elements grow away from the tooth.
@@ -298,22 +350,37 @@ impl<'a> SectorBuilder<'a> {
         from_tooth.iter().rev().map(|b| 1.0 - b).collect()
     }
 
-    /// From the first junction to the second, below the tooth.
-    fn chord(&mut self, first: &Half, second: &Half, across: &[f64]) -> Edge {
-        let (a, b) = (first.junction_point, second.junction_point);
-        let reach = (b - a).norm() / 3.0;
-        let bend =
-            |half: &Half| half.junction_point + Rotation2::new(-self.outward * half.sign * FRAC_PI_3) * half.up * reach;
-        let (a_bend, b_bend) = (bend(first), bend(second));
-        self.mesher.edge(first.junction, second.junction, across, |t| {
-            let s = 1.0 - t;
-            Point2::from(
-                a.coords * (s * s * s)
-                    + a_bend.coords * (3.0 * s * s * t)
-                    + b_bend.coords * (3.0 * s * t * t)
-                    + b.coords * (t * t * t),
-            )
-        })
+    /// From the first junction to the second, below the tooth: as the tooth block sees it and as the body block does. The two differ in
+    /// the nodes along a crack.
+    fn chord(
+        &mut self,
+        path: &ChordPath,
+        first: &Half,
+        second: &Half,
+        across: &[f64],
+    ) -> (Edge, Edge, Option<CrackFaces>) {
+        let Some(tip) = path.crack_tip else {
+            let edge = self.mesher.edge(first.junction, second.junction, across, |t| path.point(t));
+            return (edge.clone(), edge, None);
+        };
+        let split = across.iter().position(|&b| b >= tip).unwrap_or(0);
+        let (before, after) = (&across[..=split], &across[split..]);
+        let end = self.mesher.vertex(path.point(tip));
+        let at = |t| path.point(t);
+        let (above, below, faces) = if path.from_first {
+            let above = self.mesher.edge(first.mouth, end, before, at);
+            let below = self.mesher.edge(first.junction, end, before, at);
+            let rest = self.mesher.edge(end, second.junction, after, at);
+            let faces = [above.nodes().to_vec(), below.nodes().to_vec()];
+            (above.joined(&rest), below.joined(&rest), faces)
+        } else {
+            let rest = self.mesher.edge(first.junction, end, before, at);
+            let above = self.mesher.edge(end, second.mouth, after, at);
+            let below = self.mesher.edge(end, second.junction, after, at);
+            let faces = [above.reversed().nodes().to_vec(), below.reversed().nodes().to_vec()];
+            (rest.joined(&above), rest.joined(&below), faces)
+        };
+        (above, below, Some(CrackFaces { nodes: faces, length: path.crack_length, chord: path.chord_length }))
     }
 
     /// From the first tip to the second: an arc through the ends of the involutes and the tip circle on the centre line. A tip round is
@@ -345,6 +412,131 @@ impl<'a> SectorBuilder<'a> {
         let p = self.density.order;
         (0..(edge.nodes().len() - 1) / p).map(|k| edge.nodes()[k * p..=(k + 1) * p].to_vec()).collect()
     }
+}
+
+/// Curve from the first junction to the second: a cubic that leaves and reaches the fillets in thirds of their half turn, or the line of
+/// a crack continued by such a cubic. Parameters are fractions of its length.
+struct ChordPath {
+    /// Length fraction and point, ascending.
+    table: Vec<(f64, Point2<f64>)>,
+    /// Length fraction of the crack's tip from the first junction.
+    crack_tip: Option<f64>,
+    crack_length: f64,
+    chord_length: f64,
+    /// Whether the crack starts at the first junction.
+    from_first: bool,
+}
+
+/// Largest part of the chord that a crack may take: what is left must carry the tooth.
+const LONGEST_CRACK: f64 = 0.97;
+
+impl ChordPath {
+    fn new(crack: Option<&RootCrack>, first: &Half, second: &Half, outward: f64) -> Result<Self, FecmError> {
+        let bend_direction = |half: &Half| Rotation2::new(-outward * half.sign * FRAC_PI_3) * half.up;
+        let (a, b) = (first.junction_point, second.junction_point);
+        let (from_a, from_b) = (bend_direction(first), bend_direction(second));
+        let chord = cubic(a, from_a, from_b, b);
+        let chord_length = polyline_length(&chord);
+        let Some(crack) = crack else {
+            let table = by_length(&chord);
+            return Ok(Self { table, crack_tip: None, crack_length: 0.0, chord_length, from_first: true });
+        };
+        let from_first = crack.side.sign() == first.sign;
+        let (start, end, end_direction) = if from_first { (a, b, from_b) } else { (b, a, from_a) };
+        let length = match crack.length {
+            CrackLength::Chord(fraction) => fraction * chord_length,
+            CrackLength::Length(length) => length,
+        };
+        if !(length > 0.0 && length <= LONGEST_CRACK * chord_length) {
+            let (value, most) = (length, LONGEST_CRACK * chord_length);
+            return Err(FecmError::Crack {
+                what: "length (m)",
+                value,
+                allowed: format!("0 to {most:.4e} m: 97 % of the chord below the tooth"),
+            });
+        }
+        let mut points = match crack.direction {
+            None if from_first => chord,
+            None => chord.into_iter().rev().collect(),
+            Some(angle) => {
+                let side = crack.side.sign();
+                let direction = Vector2::new(-outward * angle.cos(), -side * angle.sin());
+                let tip = start + direction * length;
+                // the tip must keep away from the other fillet and from the mouth's own flank
+                let inside = side * (tip.y - end.y) > 0.02 * chord_length && side * tip.y < side * start.y;
+                if !inside {
+                    let allowed = "a direction and length that stay inside the tooth".to_owned();
+                    return Err(FecmError::Crack { what: "direction (rad)", value: angle, allowed });
+                }
+                let mut line: Vec<Point2<f64>> =
+                    (0..64).map(|k| start + direction * (length * f64::from(k) / 64.0)).collect();
+                line.extend(cubic(tip, direction, end_direction, end));
+                line
+            }
+        };
+        let tip = length / polyline_length(&points);
+        if !from_first {
+            points.reverse();
+        }
+        let crack_tip = Some(if from_first { tip } else { 1.0 - tip });
+        Ok(Self { table: by_length(&points), crack_tip, crack_length: length, chord_length, from_first })
+    }
+
+    fn point(&self, t: f64) -> Point2<f64> {
+        let next = self.table.partition_point(|entry| entry.0 < t).clamp(1, self.table.len() - 1);
+        let ((s0, p0), (s1, p1)) = (self.table[next - 1], self.table[next]);
+        p0 + (p1 - p0) * ((t - s0) / (s1 - s0)).clamp(0.0, 1.0)
+    }
+}
+
+/// Finely sampled cubic from `a` along `from_a` to `b`, where `from_b` points back into the curve.
+fn cubic(a: Point2<f64>, from_a: Vector2<f64>, from_b: Vector2<f64>, b: Point2<f64>) -> Vec<Point2<f64>> {
+    const SAMPLES: u32 = 2000;
+    let reach = (b - a).norm() / 3.0;
+    let (a_bend, b_bend) = (a + from_a.normalize() * reach, b + from_b.normalize() * reach);
+    let at = |t: f64| {
+        let s = 1.0 - t;
+        Point2::from(
+            a.coords * (s * s * s)
+                + a_bend.coords * (3.0 * s * s * t)
+                + b_bend.coords * (3.0 * s * t * t)
+                + b.coords * (t * t * t),
+        )
+    };
+    (0..=SAMPLES).map(|k| at(f64::from(k) / f64::from(SAMPLES))).collect()
+}
+
+fn polyline_length(points: &[Point2<f64>]) -> f64 {
+    points.windows(2).map(|p| (p[1] - p[0]).norm()).sum()
+}
+
+/// Points with their fraction of the length.
+fn by_length(points: &[Point2<f64>]) -> Vec<(f64, Point2<f64>)> {
+    let total = polyline_length(points);
+    let mut sum = 0.0;
+    let mut table = vec![(0.0, points[0])];
+    for pair in points.windows(2) {
+        sum += (pair[1] - pair[0]).norm();
+        table.push((sum / total, pair[1]));
+    }
+    table
+}
+
+/// Parameter of the fillet where its tangent makes an angle with the centre line.
+fn fillet_at_tangent(outline: &HalfToothOutline, angle: f64) -> Result<f64, FecmError> {
+    let at = |u: f64| outline.tangent(OutlineSegment::Fillet, u).x.abs().min(1.0).acos();
+    // from the root land (a right angle) to the flank the tangent turns toward the centre line
+    let (steepest, flattest) = (at(0.98), at(0.02));
+    if !(angle > steepest && angle < flattest) {
+        let allowed = format!("{steepest:.3} to {flattest:.3} rad: the range of this fillet");
+        return Err(FecmError::Crack { what: "tangent angle at the start (rad)", value: angle, allowed });
+    }
+    let (mut low, mut high) = (0.02, 0.98);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if at(middle) > angle { low = middle } else { high = middle }
+    }
+    Ok(0.5 * (low + high))
 }
 
 fn reverse<T>([a, b]: [T; 2]) -> [T; 2] {

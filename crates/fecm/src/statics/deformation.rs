@@ -6,9 +6,9 @@ use nalgebra::{Rotation2, Vector3};
 
 use super::model::PairModel;
 use super::result::PositionResult;
-use crate::body::{Family, GearBody};
+use crate::body::GearBody;
 use crate::error::FecmError;
-use crate::ring::{Arc, cyclic_cut_compliance};
+use crate::ring::solve_ring;
 
 /// Displacement field of a gear: hub at rest.
 #[derive(Debug, Clone)]
@@ -25,34 +25,36 @@ impl PairModel {
     /// Factorisation errors, points outside the mesh.
     pub fn deformation(&self, position: &PositionResult, member: usize) -> Result<BodyDeformation, FecmError> {
         let body = &self.bodies[member];
-        let teeth = self.pairing.gear(member).teeth() as usize;
+        let teeth = body.teeth() as usize;
         let step = self.pairing.tooth_steps()[member];
         let mut coefficients = vec![Vec::new(); teeth];
         for (index, family) in body.families.iter().enumerate() {
-            let mut loads = vec![None; teeth];
+            let mut loads: Vec<Option<Mat<f64>>> = vec![None; teeth];
             for patch in &position.patches {
                 let tooth = (i64::from(patch.pair) * i64::from(step)).rem_euclid(teeth as i64) as usize;
                 let places = if self.face.mirrored { 2.0 } else { 1.0 };
                 let area = patch.cell[0] * patch.cell[1] * places;
                 let rolls = if member == 0 { &patch.pinion_roll } else { &patch.wheel_roll };
-                let load = loads[tooth].get_or_insert_with(|| Mat::zeros(family.sector.interior_size(), 1));
+                let sector = body.sector(tooth as i32);
+                let size = sector.families[index].condensed.interior_size();
+                let load = loads[tooth].get_or_insert_with(|| Mat::zeros(size, 1));
                 for (roll, pressures) in rolls.iter().zip(&patch.pressure) {
-                    let station = body.station(*roll)?;
+                    let station = sector.station(*roll)?;
                     let mut modal = vec![0.0; family.basis.plane_degrees().len()];
                     for (z, pressure) in patch.face.iter().zip(pressures) {
                         for (sum, value) in modal.iter_mut().zip(family.basis.plane_values(*z)) {
                             *sum += value * pressure * area;
                         }
                     }
-                    body.add_load(index, &station, &modal, load);
+                    sector.add_load(index, &station, &modal, load);
                 }
             }
-            let fields = recover(body, family, teeth, &loads)?;
+            let fields = recover(body, index, &loads)?;
             for (sector, field) in coefficients.iter_mut().zip(fields) {
                 sector.push(field);
             }
         }
-        Ok(BodyDeformation { coefficients, sector_angle: body.sector.sector_angle })
+        Ok(BodyDeformation { coefficients, sector_angle: body.sector_angle() })
     }
 }
 
@@ -73,82 +75,78 @@ impl BodyDeformation {
 }
 
 /// Fields of all sectors from the loads on some.
-fn recover(
-    body: &GearBody,
-    family: &Family,
-    teeth: usize,
-    loads: &[Option<Mat<f64>>],
-) -> Result<Vec<Vec<f64>>, FecmError> {
-    let solution = family.sector.retained_solution();
-    let n = family.sector.stiffness().nrows() / 2;
+fn recover(body: &GearBody, index: usize, loads: &[Option<Mat<f64>>]) -> Result<Vec<Vec<f64>>, FecmError> {
+    let teeth = loads.len();
+    let ends = cut_displacements(body, index, loads)?;
+    let basis = &body.families[index].basis;
+    let block = basis.block();
+    let half = 0.5 * body.sector_angle();
+    let field_of = |tooth: usize| {
+        let sector = body.sector(tooth as i32);
+        let family = &sector.families[index];
+        let shape = &sector.shape;
+        let mut interior = match &loads[tooth] {
+            Some(load) => {
+                let mut own = load.clone();
+                family.condensed.solve_interior(&mut own);
+                own
+            }
+            None => Mat::zeros(family.condensed.interior_size(), 1),
+        };
+        interior -= family.condensed.retained_solution() * &ends[tooth];
+        let mut field = vec![0.0; shape.mesh.nodes.len() * block];
+        for node in 0..shape.mesh.nodes.len() as u32 {
+            for d in 0..block {
+                if let Some(row) = family.condensed.interior_row(node, d) {
+                    field[node as usize * block + d] = interior[(row, 0)];
+                }
+            }
+        }
+        let lower = shape.lower_cut.len();
+        for (position, &node) in shape.lower_cut.iter().chain(&shape.upper_cut).enumerate() {
+            let turn = Rotation2::new(if position < lower { -half } else { half });
+            for d in 0..block {
+                let Some(row) = family.condensed.retained_row(node, d) else { continue };
+                field[node as usize * block + d] = ends[tooth][(row, 0)];
+            }
+            for pair in 0..basis.plane_degrees().len() {
+                let at = node as usize * block + 2 * pair;
+                let turned = turn * nalgebra::Vector2::new(field[at], field[at + 1]);
+                (field[at], field[at + 1]) = (turned.x, turned.y);
+            }
+        }
+        field
+    };
+    Ok((0..teeth).map(field_of).collect())
+}
+
+/// Displacements of the two cuts of every sector (lower, then upper). The ring is closed once more, all its sectors in it as they
+/// are: a cyclic block-tridiagonal system, condensed to the teeth that are loaded or damaged.
+fn cut_displacements(body: &GearBody, index: usize, loads: &[Option<Mat<f64>>]) -> Result<Vec<Mat<f64>>, FecmError> {
+    let teeth = loads.len();
+    let stiffness = |tooth: usize| body.sector(tooth as i32).families[index].condensed.stiffness();
+    let n = stiffness(0).nrows() / 2;
     // loads on the cuts, cut k below sector k
     let mut cut_loads = vec![Mat::<f64>::zeros(n, 1); teeth];
     for (tooth, load) in loads.iter().enumerate() {
         let Some(load) = load else { continue };
+        let solution = body.sector(tooth as i32).families[index].condensed.retained_solution();
         let reduced = solution.transpose() * load;
         for i in 0..n {
             cut_loads[tooth][(i, 0)] -= reduced[(i, 0)];
             cut_loads[(tooth + 1) % teeth][(i, 0)] -= reduced[(n + i, 0)];
         }
     }
-    let arc = Arc::of_sector(family.sector.stiffness());
-    let compliance = cyclic_cut_compliance(&arc, teeth, teeth / 2)?;
-    let mut cuts = vec![Mat::<f64>::zeros(n, 1); teeth];
-    for (source, load) in cut_loads.iter().enumerate() {
-        if (0..n).all(|i| load[(i, 0)] == 0.0) {
-            continue;
-        }
-        for (cut, displacement) in cuts.iter_mut().enumerate() {
-            let ahead = (cut + teeth - source) % teeth;
-            if ahead < compliance.len() {
-                *displacement += &compliance[ahead] * load;
-            } else {
-                *displacement += compliance[teeth - ahead].transpose() * load;
-            }
-        }
-    }
-    let block = family.basis.block();
-    let half = 0.5 * body.sector.sector_angle;
-    let nodes = body.sector.mesh.nodes.len();
-    let lower = body.sector.lower_cut.len();
-    (0..teeth)
+    let arcs: Vec<&Mat<f64>> = (0..teeth).map(stiffness).collect();
+    let cuts = solve_ring(&arcs, &cut_loads)?;
+    Ok((0..teeth)
         .map(|tooth| {
             let mut ends = Mat::<f64>::zeros(2 * n, 1);
             for i in 0..n {
                 ends[(i, 0)] = cuts[tooth][(i, 0)];
                 ends[(n + i, 0)] = cuts[(tooth + 1) % teeth][(i, 0)];
             }
-            let mut interior = match &loads[tooth] {
-                Some(load) => {
-                    let mut own = load.clone();
-                    family.sector.solve_interior(&mut own);
-                    own
-                }
-                None => Mat::zeros(family.sector.interior_size(), 1),
-            };
-            interior -= solution * &ends;
-            let mut field = vec![0.0; nodes * block];
-            for node in 0..nodes as u32 {
-                for d in 0..block {
-                    if let Some(row) = family.sector.interior_row(node, d) {
-                        field[node as usize * block + d] = interior[(row, 0)];
-                    }
-                }
-            }
-            let retained = body.sector.lower_cut.iter().chain(&body.sector.upper_cut);
-            for (position, &node) in retained.enumerate() {
-                let turn = Rotation2::new(if position < lower { -half } else { half });
-                for d in 0..block {
-                    let Some(row) = family.sector.retained_row(node, d) else { continue };
-                    field[node as usize * block + d] = ends[(row, 0)];
-                }
-                for pair in 0..family.basis.plane_degrees().len() {
-                    let at = node as usize * block + 2 * pair;
-                    let turned = turn * nalgebra::Vector2::new(field[at], field[at + 1]);
-                    (field[at], field[at + 1]) = (turned.x, turned.y);
-                }
-            }
-            Ok(field)
+            ends
         })
-        .collect()
+        .collect())
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use gear_geom::GearPair;
+use gear_geom::{Damage, GearPair, RootCrack, ToothDamage};
 
 use super::options::PairModelOptions;
 use crate::body::{BodyOptions, BodySizes, GearBody};
@@ -16,11 +16,11 @@ use crate::pairing::Pairing;
 /// A gear pair, condensed: statics at any position and torque cost a contact solution each.
 pub struct PairModel {
     pub(super) pairing: Pairing,
-    pub(super) bodies: [GearBody; 2],
+    pub(super) bodies: [Arc<GearBody>; 2],
     pub(super) options: PairModelOptions,
     pub(super) face: FaceCells,
     /// By the bits of the cell size.
-    near_fields: Mutex<BTreeMap<u64, Arc<NearField>>>,
+    near_fields: Arc<Mutex<BTreeMap<u64, Arc<NearField>>>>,
     condensation_time: Duration,
 }
 
@@ -47,25 +47,14 @@ impl PairModel {
     pub fn new(pair: &GearPair, options: &PairModelOptions) -> Result<Self, FecmError> {
         options.validate()?;
         let started = Instant::now();
-        let pairing = Pairing::new(pair);
-        let symmetric = pairing.is_symmetric_about_midface();
+        let pairing = Pairing::new(pair).with_damage(&options.damage);
+        let symmetric = pairing.is_symmetric_about_midface() && options.damage_is_symmetric();
         let solid = matches!(options.face, FaceModel::Solid { .. });
         let common = pairing.common_facewidth();
-        let members = [&options.pinion, &options.wheel];
-        let names = ["pinion", "wheel"];
         let condense = |index: usize| {
-            let gear = pairing.gear(index);
-            let body = BodyOptions {
-                mesh: members[index].mesh,
-                face: options.face,
-                // a plane model is uniform along the face that carries load
-                width: if solid { gear.facewidth() } else { common },
-                bore: members[index].bore,
-                matching_depth: options.contact.matching_depth * gear.module(),
-                reach: pairing.most_pairs(),
-                antisymmetric: solid && !symmetric,
-            };
-            GearBody::new(gear, pairing.side(index), &members[index].material, &body, names[index])
+            let body = body_options(&pairing, options, symmetric, index);
+            let material = &options.member(index).material;
+            GearBody::new(pairing.gear(index), pairing.side(index), material, &body, NAMES[index]).map(Arc::new)
         };
         let (pinion, wheel) = rayon::join(|| condense(0), || condense(1));
         let bodies = [pinion?, wheel?];
@@ -75,8 +64,39 @@ impl PairModel {
         } else {
             FaceCells::new(common, 1, false)
         };
-        let near_fields = Mutex::default();
-        Ok(Self { pairing, bodies, options: *options, face, near_fields, condensation_time: started.elapsed() })
+        let near_fields = Arc::default();
+        Ok(Self { pairing, bodies, options: options.clone(), face, near_fields, condensation_time: started.elapsed() })
+    }
+
+    /// The same pair with other damage. What damage does not touch is shared: a healthy gear as a whole, of a cracked one all but the cracked
+    /// sectors. Damage that breaks the symmetry about mid-face of this model needs [`Self::new`] and gets it.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_damage(&self, damage: &[Vec<ToothDamage>; 2]) -> Result<Self, FecmError> {
+        let options = PairModelOptions { damage: damage.clone(), ..self.options.clone() };
+        if self.stats().symmetric && !options.damage_is_symmetric() {
+            return Self::new(self.pairing.pair(), &options);
+        }
+        let started = Instant::now();
+        let pairing = Pairing::new(self.pairing.pair()).with_damage(damage);
+        let derive = |index: usize| {
+            let cracks = cracks_of(&damage[index]);
+            if cracks == cracks_of(&self.options.damage[index]) {
+                return Ok(Arc::clone(&self.bodies[index]));
+            }
+            let body = body_options(&pairing, &options, self.stats().symmetric, index);
+            self.bodies[index].with_cracks(pairing.gear(index), &body, NAMES[index]).map(Arc::new)
+        };
+        let (pinion, wheel) = rayon::join(|| derive(0), || derive(1));
+        Ok(Self {
+            bodies: [pinion?, wheel?],
+            pairing,
+            options,
+            face: self.face.clone(),
+            near_fields: Arc::clone(&self.near_fields),
+            condensation_time: started.elapsed(),
+        })
     }
 
     /// Sizes and cost.
@@ -93,7 +113,7 @@ impl PairModel {
 
     /// Bodies: pinion, wheel.
     #[must_use]
-    pub fn bodies(&self) -> &[GearBody; 2] {
+    pub fn bodies(&self) -> &[Arc<GearBody>; 2] {
         &self.bodies
     }
 
@@ -154,7 +174,7 @@ impl PairModel {
     /// `1 / E* = (1 - nu_1^2) / E_1 + (1 - nu_2^2) / E_2`, without the `nu` for plane stress (1/Pa).
     pub(super) fn compliance_modulus(&self) -> f64 {
         let plane_stress = self.options.face == FaceModel::PlaneStress;
-        let one = |body: &GearBody| {
+        let one = |body: &Arc<GearBody>| {
             let nu = if plane_stress { 0.0 } else { body.material.poisson_ratio };
             (1.0 - nu * nu) / body.material.young_modulus
         };
@@ -170,4 +190,32 @@ impl PairModel {
 /// The nearest size on a ladder of quarter octaves.
 pub(super) fn on_ladder(cell: f64) -> f64 {
     2.0_f64.powf((4.0 * cell.log2()).round() / 4.0)
+}
+
+/// Names of the gears in errors.
+const NAMES: [&str; 2] = ["pinion", "wheel"];
+
+fn body_options(pairing: &Pairing, options: &PairModelOptions, symmetric: bool, index: usize) -> BodyOptions {
+    let solid = matches!(options.face, FaceModel::Solid { .. });
+    let (gear, member) = (pairing.gear(index), options.member(index));
+    BodyOptions {
+        mesh: member.mesh,
+        face: options.face,
+        // a plane model is uniform along the face that carries load
+        width: if solid { gear.facewidth() } else { pairing.common_facewidth() },
+        bore: member.bore,
+        matching_depth: options.contact.matching_depth * gear.module(),
+        reach: pairing.most_pairs(),
+        antisymmetric: solid && !symmetric,
+        cracks: cracks_of(&options.damage[index]),
+    }
+}
+
+/// The cracks among a gear's damage.
+fn cracks_of(damage: &[ToothDamage]) -> Vec<(i64, RootCrack)> {
+    let cracks = damage.iter().filter_map(|damage| match damage.damage {
+        Damage::Crack(crack) => Some((damage.tooth, crack)),
+        Damage::Pit(_) => None,
+    });
+    cracks.collect()
 }

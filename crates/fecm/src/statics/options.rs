@@ -1,5 +1,7 @@
 //! What a static analysis needs besides the geometry.
 
+use gear_geom::{Damage, ToothDamage};
+
 use crate::body::BoreCondition;
 use crate::error::FecmError;
 use crate::face::FaceModel;
@@ -52,7 +54,7 @@ impl Default for ContactOptions {
 }
 
 /// Options of a [`super::PairModel`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PairModelOptions {
     /// Behaviour along the face.
     pub face: FaceModel,
@@ -62,6 +64,8 @@ pub struct PairModelOptions {
     pub wheel: MemberOptions,
     /// Contact.
     pub contact: ContactOptions,
+    /// Damaged teeth of the driving and of the driven gear. Tooth 0 belongs to tooth pair 0.
+    pub damage: [Vec<ToothDamage>; 2],
 }
 
 impl Default for PairModelOptions {
@@ -71,11 +75,27 @@ impl Default for PairModelOptions {
             pinion: MemberOptions::default(),
             wheel: MemberOptions::default(),
             contact: ContactOptions::default(),
+            damage: [Vec::new(), Vec::new()],
         }
     }
 }
 
 impl PairModelOptions {
+    /// Options of the pinion (0) or wheel (1).
+    #[must_use]
+    pub fn member(&self, index: usize) -> &MemberOptions {
+        if index == 0 { &self.pinion } else { &self.wheel }
+    }
+
+    /// Whether all damage is its own image about mid-face.
+    #[must_use]
+    pub fn damage_is_symmetric(&self) -> bool {
+        self.damage.iter().flatten().all(|damage| match &damage.damage {
+            Damage::Crack(_) => true,
+            Damage::Pit(pit) => pit.is_symmetric(),
+        })
+    }
+
     /// Checks the ranges.
     ///
     /// # Errors

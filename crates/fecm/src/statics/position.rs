@@ -89,7 +89,7 @@ impl PairModel {
                 Some((before, compliance, _)) if near_enough && same_cells(&before) => compliance,
                 _ => {
                     compliance_from = rotation;
-                    let bodies = [&self.bodies[0], &self.bodies[1]];
+                    let bodies = [&*self.bodies[0], &*self.bodies[1]];
                     grid.compliance(bodies, self.pairing.tooth_steps(), &self.near_field(cell))?
                 }
             };

@@ -18,7 +18,7 @@ pub fn body(model: &PairModel, position: &PositionResult, member: usize) -> Resu
     let body = &model.bodies()[member];
     let gear = model.pairing().gear(member);
     let (centre, angle) = placement(model, position, member);
-    let mesh = &body.sector.mesh;
+    let mesh = &body.sector(0).shape.mesh;
     let solid = model.is_solid();
     let layers: Vec<f64> = if solid {
         (0..=LAYERS).map(|k| gear.facewidth() * (k as f64 / LAYERS as f64 - 0.5)).collect()
@@ -28,7 +28,7 @@ pub fn body(model: &PairModel, position: &PositionResult, member: usize) -> Resu
     let (mut points, mut displacements) = (Vec::new(), Vec::new());
     let turn = Rotation2::new(angle);
     for sector in 0..gear.teeth() as usize {
-        let own = Rotation2::new(angle + body.sector.sector_angle * sector as f64);
+        let own = Rotation2::new(angle + body.sector_angle() * sector as f64);
         for &z in &layers {
             for (node, place) in mesh.nodes.iter().enumerate() {
                 let in_space = centre + own * place.coords;
@@ -71,7 +71,7 @@ pub fn pressure(model: &PairModel, position: &PositionResult) -> Grid {
     for patch in &position.patches {
         let tooth = patch.pair * pairing.tooth_steps()[0];
         let (centre, angle) = placement(model, position, 0);
-        let own = Rotation2::new(angle + model.bodies()[0].sector.sector_angle * f64::from(tooth));
+        let own = Rotation2::new(angle + model.bodies()[0].sector_angle() * f64::from(tooth));
         let on_flank = |roll: f64, z: f64| -> Vector3<f64> {
             let p = centre + own * pinion.flank_point(pairing.side(0), roll).coords;
             Vector3::new(p.x, p.y, z)

@@ -139,7 +139,9 @@ fn draw(
     )?;
     save(figures::per_pair(title, "Peak pressure (MPa)", series, origin, |p| p.peak_pressure * 1e-6), "peak_pressure")?;
     save(figures::per_pair(title, "Contact width (mm)", series, origin, |p| p.contact_width * 1e3), "contact_width")?;
-    if let Some(map) = figures::flank_pressure("Largest pressure on the pinion flank (MPa)", series, &case.pair, mirrored) {
+    if let Some(map) =
+        figures::flank_pressure("Largest pressure on the pinion flank (MPa)", series, &case.pair, mirrored)
+    {
         map.save(&file, "flank_pressure").map_err(|e| anyhow!("plot flank_pressure: {e}"))?;
     }
     if let Some(map) = map {

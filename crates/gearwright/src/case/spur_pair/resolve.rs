@@ -269,6 +269,7 @@ fn options(inputs: &SpurPair, document: &Node, faults: &mut Vec<Fault>) -> PairM
         MemberOptions { material, mesh, bore }
     };
     PairModelOptions {
+        damage: [Vec::new(), Vec::new()],
         pinion: member("pinion", &inputs.pinion),
         wheel: member("gear", &inputs.gear),
         face: match inputs.analysis.model {

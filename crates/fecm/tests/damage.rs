@@ -1,0 +1,322 @@
+//! Cracked and pitted teeth.
+
+use faer::Mat;
+use fecm::body::ring::RingCompliance;
+use fecm::condense::{CondensedBody, Substructure};
+use fecm::element::lagrange::{LagrangeBasis, gauss_rule};
+use fecm::face::{FaceBasis, Parity};
+use fecm::mesh::blocks::{BlockMesher, Edge, geometric_breaks};
+use fecm::mesh::{MeshDensity, SectorMesh};
+use fecm::ring::{Arc, ring_compliance};
+use fecm::statics::{PairModel, PairModelOptions, PositionResult, PositionStatus, StaticsRequest};
+use fecm::{FaceModel, FecmError, Material};
+use gear_geom::{
+    CrackLength, Damage, FlankSide, Gear, GearPair, GearSpec, Member, Pit, RootCrack, ToothDamage, ToothThickness,
+};
+use nalgebra::Point2;
+
+const TORQUE: f64 = 200.0;
+
+fn gear(teeth: u32) -> Gear {
+    let module = 6e-3;
+    let radius = 0.5 * module * f64::from(teeth);
+    Gear::new(&GearSpec {
+        teeth,
+        thickness: ToothThickness::AtReference(0.5 * std::f64::consts::PI * module - 0.05e-3),
+        tip_radius: radius + module,
+        root_radius: radius - 1.25 * module,
+        rim_radius: 0.4 * radius,
+        ..GearSpec::default()
+    })
+    .unwrap()
+}
+
+fn pair() -> GearPair {
+    GearPair::new(gear(25), gear(31), 168e-3).unwrap()
+}
+
+fn options(face: FaceModel) -> PairModelOptions {
+    let mut options = PairModelOptions { face, ..PairModelOptions::default() };
+    options.contact.face_cells = 16;
+    options
+}
+
+fn crack(tooth: i64, fraction: f64) -> ToothDamage {
+    ToothDamage { tooth, damage: Damage::Crack(RootCrack::along_chord(FlankSide::Upper, fraction)) }
+}
+
+fn pit(tooth: i64, pit: Pit) -> ToothDamage {
+    ToothDamage { tooth, damage: Damage::Pit(pit) }
+}
+
+fn solve(model: &PairModel, mesh_cycles: &[f64]) -> Vec<PositionResult> {
+    let request = StaticsRequest {
+        mesh_cycles: mesh_cycles.to_vec(),
+        torques: vec![TORQUE],
+        stiffness_difference: false,
+        keep_pressure: true,
+    };
+    model.solve(&request, &()).unwrap().results.remove(0)
+}
+
+const CYCLES: [f64; 8] = [-1.2, -0.7, -0.4, 0.0, 0.15, 0.45, 0.7, 1.2];
+
+#[test]
+fn invariant_no_crack_and_no_pit_is_healthy_to_the_bit() {
+    for face in [FaceModel::PlaneStrain, FaceModel::Solid { order: 4 }] {
+        let healthy = PairModel::new(&pair(), &options(face)).unwrap();
+        let nothing = [vec![crack(0, 0.0), pit(1, Pit { shapes: vec![], depth: None })], vec![]];
+        let undamaged = healthy.with_damage(&nothing).unwrap();
+        assert_eq!(solve(&healthy, &CYCLES), solve(&undamaged, &CYCLES));
+    }
+}
+
+/// A model derived from a healthy one is the model made anew.
+#[test]
+fn invariant_derived_model_equals_the_one_made_anew() {
+    let damage = [vec![crack(0, 0.4), pit(0, Pit::ellipse(0.0, 0.026, 6e-3, 3e-3))], vec![crack(30, 0.2)]];
+    for face in [FaceModel::PlaneStrain, FaceModel::Solid { order: 4 }] {
+        let healthy = PairModel::new(&pair(), &options(face)).unwrap();
+        let derived = healthy.with_damage(&damage).unwrap();
+        let anew = PairModel::new(&pair(), &PairModelOptions { damage: damage.clone(), ..options(face) }).unwrap();
+        assert_eq!(solve(&derived, &CYCLES), solve(&anew, &CYCLES));
+    }
+}
+
+/// Low-rank update of the healthy ring against closing a ring that has the damaged sectors in it.
+#[test]
+fn invariant_damaged_ring_closed_directly() {
+    let gear = gear(25);
+    let basis = FaceBasis::new(FaceModel::Solid { order: 3 }, Parity::Symmetric, 16e-3, &Material::STEEL).unwrap();
+    let density = MeshDensity { order: 2, density: 0.7 };
+    let stiffness = |crack: Option<RootCrack>| {
+        let sector = SectorMesh::with_crack(&gear, &density, crack.as_ref(), "gear").unwrap();
+        CondensedBody::new(&sector.substructure(None), &basis).unwrap().stiffness().clone()
+    };
+    let healthy = stiffness(None);
+    let cracked = stiffness(Some(RootCrack::along_chord(FlankSide::Upper, 0.6)));
+    let other = stiffness(Some(RootCrack::along_chord(FlankSide::Lower, 0.3)));
+    let ring = RingCompliance::healthy(&healthy, 25, 3).unwrap();
+    let ring = ring.with_damage(&healthy, &[(0, &cracked), (2, &other)], 5).unwrap();
+    let arcs: Vec<Arc> = (0..25)
+        .map(|tooth| {
+            Arc::of_sector(if tooth == 0 {
+                &cracked
+            } else if tooth == 2 {
+                &other
+            } else {
+                &healthy
+            })
+        })
+        .collect();
+    let direct = ring_compliance(&arcs).unwrap();
+    let n = healthy.nrows() / 2;
+    for (a, b) in [(0, 0), (1, 0), (0, 2), (2, 2), (24, 1), (3, 3), (22, 0)] {
+        let pair = ring.pair(a, b);
+        let cut = |tooth: i32, row: usize| ((tooth as usize + row / n) % 25) * n + row % n;
+        let exact = Mat::from_fn(2 * n, 2 * n, |i, j| direct[(cut(a, i), cut(b, j))]);
+        let scale = (0..2 * n).map(|i| direct[(cut(a, i), cut(a, i))]).fold(0.0, f64::max);
+        for j in 0..2 * n {
+            for i in 0..2 * n {
+                assert!((pair[(i, j)] - exact[(i, j)]).abs() < 1e-9 * scale, "sectors {a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn invariant_longer_cracks_are_softer_and_only_where_their_tooth_is_in_mesh() {
+    let healthy = PairModel::new(&pair(), &options(FaceModel::Solid { order: 4 })).unwrap();
+    let mut last = solve(&healthy, &CYCLES);
+    let reference = last.clone();
+    for fraction in [0.01, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95] {
+        let cracked = solve(&healthy.with_damage(&[vec![crack(0, fraction)], vec![]]).unwrap(), &CYCLES);
+        for ((now, before), healthy) in cracked.iter().zip(&last).zip(&reference) {
+            assert_eq!(now.status, PositionStatus::Converged, "{fraction} {}", now.mesh_cycle);
+            let growth = now.static_transmission_error / before.static_transmission_error - 1.0;
+            // mesh changes with the crack: discretisation moves the answer by some 1e-4
+            assert!(growth > -3e-4, "{fraction} at {}: {growth}", now.mesh_cycle);
+            let change = now.static_transmission_error / healthy.static_transmission_error - 1.0;
+            let engaged = now.pairs.iter().any(|p| p.pair == 0 && p.force > 0.0);
+            if !engaged {
+                assert!(change.abs() < 0.02 * fraction, "{fraction} at {}: {change}", now.mesh_cycle);
+            }
+        }
+        last = cracked;
+    }
+    let at_pitch = |results: &[PositionResult]| results[3].static_transmission_error;
+    assert!(at_pitch(&last) > 2.0 * at_pitch(&reference), "95 % of the chord is gone");
+}
+
+/// D3.2.4.2.3: a pit on the pinion's or on the gear's flank opposite it makes the same transmission error.
+#[test]
+fn invariant_pit_on_either_flank() {
+    let pair = pair();
+    let model = PairModel::new(&pair, &options(FaceModel::Solid { order: 4 })).unwrap();
+    let roll = pair.pitch_roll();
+    let opposite = pair.partner_roll(Member::Pinion, roll);
+    let on_pinion = model.with_damage(&[vec![pit(0, Pit::ellipse(0.0, roll, 9e-3, 3e-3))], vec![]]).unwrap();
+    let on_gear = model.with_damage(&[vec![], vec![pit(0, Pit::ellipse(0.0, opposite, 9e-3, 3e-3))]]).unwrap();
+    for (a, b) in solve(&on_pinion, &[-0.05, 0.0, 0.05, 0.1]).iter().zip(&solve(&on_gear, &[-0.05, 0.0, 0.05, 0.1])) {
+        let difference = a.static_transmission_error / b.static_transmission_error - 1.0;
+        // the pit's rim falls between other cells
+        assert!(difference.abs() < 5e-3, "{}: {difference}", a.mesh_cycle);
+    }
+    let healthy = solve(&model, &[0.0])[0].static_transmission_error;
+    assert!(solve(&on_pinion, &[0.0])[0].static_transmission_error > 1.02 * healthy);
+}
+
+#[test]
+fn extreme_pits() {
+    let pair = pair();
+    let model = PairModel::new(&pair, &options(FaceModel::Solid { order: 4 })).unwrap();
+    let roll = pair.pitch_roll();
+    let landmarks = pair.landmarks(Member::Pinion);
+    // the whole flank: the neighbours carry everything while they can reach
+    let whole = Pit::ellipse(0.0, roll, 1.0, 1.0);
+    let results = solve(&model.with_damage(&[vec![pit(0, whole)], vec![]]).unwrap(), &[-0.45, 0.45]);
+    for at in &results {
+        assert_eq!(at.status, PositionStatus::Converged);
+        assert!(at.pairs.iter().all(|p| p.pair != 0 || p.force == 0.0), "{:?}", at.pairs);
+        assert!((at.pairs.iter().map(|p| p.share).sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+    for one in [
+        // smaller than a cell, at the tip, at the end of the face, beyond it, of some depth
+        Pit::ellipse(0.0, roll, 1e-5, 1e-5),
+        Pit::ellipse(0.0, landmarks.eap.roll_distance, 5e-3, 2e-3),
+        Pit::ellipse(8e-3, roll, 5e-3, 2e-3),
+        Pit::ellipse(9e-3, roll, 5e-3, 2e-3),
+        Pit { depth: Some(5e-6), ..Pit::ellipse(0.0, roll, 5e-3, 2e-3) },
+    ] {
+        let damaged = model.with_damage(&[vec![pit(0, one.clone())], vec![]]).unwrap();
+        for at in solve(&damaged, &[-0.3, 0.0, 0.3, 0.6]) {
+            assert_eq!(at.status, PositionStatus::Converged, "{one:?}");
+            assert!(at.stats.torque_residual < 1e-9 && at.stats.solver.kkt_violation < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn extreme_several_damages() {
+    let model = PairModel::new(&pair(), &options(FaceModel::Solid { order: 4 })).unwrap();
+    let roll = pair().pitch_roll();
+    let together = [
+        vec![crack(0, 0.5), pit(0, Pit::ellipse(0.0, roll, 6e-3, 2e-3)), crack(1, 0.3), crack(-1, 0.2)],
+        vec![crack(0, 0.4), pit(1, Pit::ellipse(2e-3, roll, 6e-3, 2e-3))],
+    ];
+    let healthy = solve(&model, &CYCLES);
+    for (at, healthy) in solve(&model.with_damage(&together).unwrap(), &CYCLES).iter().zip(&healthy) {
+        assert_eq!(at.status, PositionStatus::Converged);
+        assert!(at.static_transmission_error > 0.999 * healthy.static_transmission_error);
+    }
+}
+
+#[test]
+fn impossible_cracks_are_explained() {
+    let model = PairModel::new(&pair(), &options(FaceModel::PlaneStrain)).unwrap();
+    let with = |crack: RootCrack| {
+        let damage = ToothDamage { tooth: 0, damage: Damage::Crack(crack) };
+        model.with_damage(&[vec![damage], vec![]]).map(|_| ())
+    };
+    let usual = RootCrack::along_chord(FlankSide::Upper, 0.3);
+    for crack in [
+        RootCrack { length: CrackLength::Chord(1.2), ..usual },
+        RootCrack { length: CrackLength::Length(0.5), ..usual },
+        RootCrack { length: CrackLength::Length(f64::NAN), ..usual },
+        RootCrack { start_tangent: Some(0.01), ..usual },
+        RootCrack { direction: Some(-0.5), ..usual },
+    ] {
+        assert!(matches!(with(crack), Err(FecmError::Crack { .. })), "{crack:?}");
+    }
+    for crack in [
+        RootCrack { start_tangent: Some(30_f64.to_radians()), ..usual },
+        RootCrack { direction: Some(60_f64.to_radians()), length: CrackLength::Length(2e-3), ..usual },
+        RootCrack { side: FlankSide::Lower, ..usual },
+    ] {
+        with(crack).unwrap();
+    }
+    let two = [vec![crack(3, 0.1), crack(28, 0.2)], vec![]];
+    assert!(matches!(model.with_damage(&two), Err(FecmError::Crack { .. })), "tooth 28 is tooth 3");
+}
+
+/// Stress-intensity factor of a plate with an edge crack under tension, from the energy it releases: `K^2 = E' G`, `G = dU/da` at constant
+/// load. Cracks are doubled nodes between two blocks, as in a tooth. Closed form `K = sigma sqrt(pi a) F(a / b)` of H. Tada, P. C. Paris and
+/// G. R. Irwin, *The Stress Analysis of Cracks Handbook*, section 2.11 (within 0.5 % for any `a / b`).
+#[test]
+fn peer_tada_edge_cracked_plate() {
+    let (young, poisson) = (Material::STEEL.young_modulus, Material::STEEL.poisson_ratio);
+    let width = 20e-3;
+    for ratio in [0.2, 0.4, 0.6] {
+        let crack = ratio * width;
+        let step = 0.01 * crack;
+        let release = (plate_energy(width, crack + step) - plate_energy(width, crack - step)) / (2.0 * step);
+        let computed = (release * young / (1.0 - poisson * poisson)).sqrt();
+        let angle = 0.5 * std::f64::consts::PI * ratio;
+        let shape =
+            (angle.tan() / angle).sqrt() * (0.752 + 2.02 * ratio + 0.37 * (1.0 - angle.sin()).powi(3)) / angle.cos();
+        let exact = STRESS * (std::f64::consts::PI * crack).sqrt() * shape;
+        assert!((computed / exact - 1.0).abs() < 0.01, "a/b = {ratio}: {computed} against {exact}");
+    }
+}
+
+const STRESS: f64 = 1e8;
+
+/// Strain energy (J per metre of thickness) of a plate `width` wide and three times as high in all, edge crack of length `crack`, plane strain.
+fn plate_energy(width: f64, crack: f64) -> f64 {
+    let half_height = 1.5 * width;
+    let basis = FaceBasis::new(FaceModel::PlaneStrain, Parity::Symmetric, 1.0, &Material::STEEL).unwrap();
+    let mut mesher = BlockMesher::new(4);
+    let tip = crack / width;
+    let graded = |count| geometric_breaks(count, 2.0);
+    let to_tip: Vec<f64> = graded(8).iter().rev().map(|b| tip * (1.0 - b)).collect();
+    let from_tip: Vec<f64> = graded(8).iter().map(|b| tip + (1.0 - tip) * b).collect();
+    let across = [to_tip.clone(), from_tip[1..].to_vec()].concat();
+    let up = geometric_breaks(10, 1.8);
+    let at = |x: f64, y: f64| Point2::new(x * width, y * half_height);
+    let [mouth_above, mouth_below, end, right] = [0.0, 0.0, tip, 1.0].map(|x| mesher.vertex(at(x, 0.0)));
+    let above = mesher.edge(mouth_above, end, &to_tip, |t| at(t, 0.0));
+    let below = mesher.edge(mouth_below, end, &to_tip, |t| at(t, 0.0));
+    let ligament = mesher.edge(end, right, &from_tip, |t| at(t, 0.0));
+    let mut loaded = Vec::new();
+    let mut sides = Vec::new();
+    for (edge, mouth, sign) in [(above, mouth_above, 1.0), (below, mouth_below, -1.0)] {
+        let [left_far, right_far] = [0.0, 1.0].map(|x| mesher.vertex(at(x, sign)));
+        let far = mesher.edge(left_far, right_far, &across, |t| at(t, sign));
+        let left = mesher.edge(mouth, left_far, &up, |t| at(0.0, sign * t));
+        let right = mesher.edge(right, right_far, &up, |t| at(1.0, sign * t));
+        let near = edge.joined(&ligament);
+        if sign > 0.0 {
+            mesher.block(&near, &far, &left, &right);
+        } else {
+            mesher.block(&far, &near, &left.reversed(), &right.reversed());
+        }
+        loaded.push((far, sign));
+        sides.push(right);
+    }
+    let mesh = mesher.finish();
+    let pieces = |edge: &Edge| -> Vec<Vec<u32>> {
+        edge.nodes().windows(mesh.order + 1).step_by(mesh.order).map(<[u32]>::to_vec).collect()
+    };
+    // the loads balance; springs of a billionth of the plate's stiffness only keep it from drifting
+    let springs: Vec<Vec<u32>> = sides.iter().flat_map(pieces).collect();
+    let soft = 1e-9 * Material::STEEL.young_modulus / width;
+    let body = Substructure { mesh: &mesh, retained: vec![], fixed: vec![], springs: Some((soft, &springs)) };
+    let body = CondensedBody::new(&body, &basis).unwrap();
+    let line = LagrangeBasis::new(mesh.order);
+    let mut shapes = vec![0.0; mesh.order + 1];
+    let mut loads = Mat::zeros(body.interior_size(), 1);
+    for (edge, sign) in &loaded {
+        for piece in pieces(edge) {
+            let length = (mesh.nodes[piece[mesh.order] as usize] - mesh.nodes[piece[0] as usize]).norm();
+            for (x, weight) in gauss_rule(mesh.order + 1) {
+                line.values_into(x, &mut shapes);
+                for (node, shape) in piece.iter().zip(&shapes) {
+                    loads[(body.interior_row(*node, 1).unwrap(), 0)] += sign * STRESS * 0.5 * length * weight * shape;
+                }
+            }
+        }
+    }
+    let mut moved = loads.clone();
+    body.solve_interior(&mut moved);
+    0.5 * (0..loads.nrows()).map(|i| loads[(i, 0)] * moved[(i, 0)]).sum::<f64>()
+}
