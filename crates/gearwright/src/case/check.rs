@@ -46,7 +46,12 @@ fn check(root: &Node, node: &Node, schema: &Json, whole: &Json, at: &str, faults
     match &node.value {
         Value::Table(table) => {
             let Some(properties) = schema.get("properties").and_then(Json::as_object) else {
-                faults.push(root.fault(at, format!("a section is not expected here: {}", expected(&schema))));
+                let wanted = if is_list_of_sections(&schema, whole) {
+                    format!("write [[{at}]], it may be repeated")
+                } else {
+                    expected(&schema)
+                };
+                faults.push(root.fault(at, format!("a section is not expected here: {wanted}")));
                 return;
             };
             for (key, child) in table {
@@ -65,8 +70,29 @@ fn check(root: &Node, node: &Node, schema: &Json, whole: &Json, at: &str, faults
                 }
             }
         }
+        Value::List(items) => match schema.get("items").filter(|_| is_list_of_sections(&schema, whole)) {
+            Some(item) => {
+                for (index, node) in items.iter().enumerate() {
+                    check(root, node, item, whole, &format!("{at}[{}]", index + 1), faults);
+                }
+            }
+            None => {
+                faults.push(root.fault(at, format!("repeated sections are not expected here: {}", expected(&schema))))
+            }
+        },
+        Value::Plain(value)
+            if value.as_array().is_some_and(|v| !v.is_empty()) && is_list_of_sections(&schema, whole) =>
+        {
+            faults.push(root.fault(at, format!("must be repeated sections, each headed [[{at}]]")));
+        }
         Value::Plain(value) => check_plain(root, value, &schema, at, faults),
     }
+}
+
+/// Whether a schema describes repeated sections.
+#[must_use]
+pub fn is_list_of_sections(schema: &Json, whole: &Json) -> bool {
+    schema.get("items").is_some_and(|item| resolve(item, whole).get("properties").is_some())
 }
 
 fn check_plain(root: &Node, value: &Json, schema: &Json, at: &str, faults: &mut Vec<Fault>) {
@@ -149,9 +175,31 @@ pub fn expected(schema: &Json) -> String {
 }
 
 fn unknown<'a>(key: &str, known: impl Iterator<Item = &'a String> + Clone) -> String {
-    const UNITS: [&str; 18] = [
-        "_mm", "_um", "_m", "_in", "_inch", "_deg", "_rad", "_n_m", "_nm", "_lb_in", "_gpa", "_mpa", "_pa", "_s",
-        "_ms", "_hz", "_rpm", "_kg",
+    const UNITS: [&str; 24] = [
+        "_mm",
+        "_um",
+        "_m",
+        "_in",
+        "_inch",
+        "_deg",
+        "_rad",
+        "_n_m",
+        "_nm",
+        "_lb_in",
+        "_gpa",
+        "_mpa",
+        "_pa",
+        "_s",
+        "_ms",
+        "_hz",
+        "_rpm",
+        "_kg",
+        "_g",
+        "_kg_m2",
+        "_n_per_m",
+        "_n_per_um",
+        "_n_s_per_m",
+        "_n_s",
     ];
     let stem = |k: &'a str| UNITS.iter().filter_map(|unit| k.strip_suffix(unit)).min_by_key(|stem| stem.len());
     // the same quantity in another unit, or without one

@@ -23,6 +23,8 @@ pub struct Node {
 pub enum Value {
     /// Section.
     Table(BTreeMap<String, Node>),
+    /// Repeated section, `[[name]]`.
+    List(Vec<Node>),
     /// Anything else.
     Plain(serde_json::Value),
 }
@@ -61,9 +63,17 @@ fn convert(text: &str, line: usize, value: &Spanned<DeValue<'_>>) -> Node {
     let source = text.get(span).unwrap_or_default().trim().to_owned();
     let value = match value.get_ref() {
         DeValue::Table(table) => Value::Table(convert_table(text, table)),
+        DeValue::Array(items) if is_list(items) => {
+            Value::List(items.iter().map(|item| convert(text, line_of(text, item.span().start), item)).collect())
+        }
         other => Value::Plain(plain(other)),
     };
     Node { line, text: source, value }
+}
+
+/// Whether an array is a repeated section.
+fn is_list(items: &[Spanned<DeValue<'_>>]) -> bool {
+    !items.is_empty() && items.iter().all(|item| matches!(item.get_ref(), DeValue::Table(_)))
 }
 
 fn plain(value: &DeValue<'_>) -> serde_json::Value {
@@ -82,12 +92,20 @@ fn plain(value: &DeValue<'_>) -> serde_json::Value {
 }
 
 impl Node {
-    /// The node at a dotted key.
+    /// The node at a dotted key; `name[2]` is the second of the repeated sections `name`.
     #[must_use]
     pub fn find(&self, key: &str) -> Option<&Self> {
-        key.split('.').try_fold(self, |node, part| match &node.value {
-            Value::Table(table) => table.get(part),
-            Value::Plain(_) => None,
+        key.split('.').try_fold(self, |node, part| {
+            let (name, item) = match part.strip_suffix(']').and_then(|p| p.split_once('[')) {
+                Some((name, number)) => (name, Some(number.parse::<usize>().ok()?.checked_sub(1)?)),
+                None => (part, None),
+            };
+            let Value::Table(table) = &node.value else { return None };
+            match (table.get(name)?, item) {
+                (found, None) => Some(found),
+                (Self { value: Value::List(items), .. }, Some(item)) => items.get(item),
+                _ => None,
+            }
         })
     }
 
@@ -102,7 +120,7 @@ impl Node {
             section = outer;
             line = self.find(section).map(|node| node.line);
         }
-        let value = written.filter(|node| !matches!(node.value, Value::Table(_))).map(|node| node.text.clone());
+        let value = written.filter(|node| matches!(node.value, Value::Plain(_))).map(|node| node.text.clone());
         Fault { line, key: key.into(), value, message: message.into() }
     }
 }

@@ -2,7 +2,7 @@
 
 use serde_json::Value as Json;
 
-use super::check::expected;
+use super::check::{expected, is_list_of_sections};
 use super::kind::CaseKind;
 
 /// One key of the case file.
@@ -12,10 +12,14 @@ pub struct KeyReference {
     pub key: String,
     /// Whether it is a section.
     pub is_section: bool,
+    /// Whether the section may be repeated, `[[name]]`.
+    pub is_list: bool,
     /// Whether it must be given.
     pub required: bool,
     /// What is allowed.
     pub allowed: String,
+    /// Whether it is a section that stands with its defaults when left out.
+    pub given_by_default: bool,
     /// Default, where there is one to state.
     pub default: Option<String>,
     /// Documentation.
@@ -59,16 +63,29 @@ fn collect(schema: &Json, whole: &Json, at: &str, defaults: Option<&Json>, all: 
         schema.get("required").and_then(Json::as_array).into_iter().flatten().filter_map(Json::as_str).collect();
     let Some(properties) = schema.get("properties").and_then(Json::as_object) else { return };
     for (name, property) in properties {
-        let target = resolve(property, whole);
+        let mut target = resolve(property, whole);
+        let is_list = is_list_of_sections(&target, whole);
+        if let Some(mut item) = target.get("items").filter(|_| is_list).map(|item| resolve(item, whole)) {
+            if let (Some(about), Some(object)) = (target.get("description"), item.as_object_mut()) {
+                object.insert("description".into(), about.clone());
+            }
+            target = item;
+        }
         let key = if at.is_empty() { name.clone() } else { format!("{at}.{name}") };
         let is_section = target.get("properties").is_some();
         let default = defaults.and_then(|d| d.get(name)).or_else(|| target.get("default"));
-        let shown = default.filter(|d| !d.is_null() && !d.is_object()).map(ToString::to_string);
+        let shown = default.filter(|d| !d.is_null() && !d.is_object() && !is_list).map(ToString::to_string);
         all.push(KeyReference {
             key: key.clone(),
             is_section,
+            is_list,
             required: required.contains(&name.as_str()),
-            allowed: if is_section { "a section".into() } else { expected(&target) },
+            allowed: match (is_list, is_section) {
+                (true, _) => "repeated sections".into(),
+                (false, true) => "a section".into(),
+                (false, false) => expected(&target),
+            },
+            given_by_default: is_section && !is_list && default.is_some_and(Json::is_object),
             default: shown,
             text: target.get("description").and_then(Json::as_str).unwrap_or_default().replace('\n', " "),
         });

@@ -19,7 +19,11 @@ pub fn commented(kind: &CaseKind) -> String {
 fn lines(key: &KeyReference, example: &[(&str, &str)]) -> String {
     let name = key.key.rsplit('.').next().unwrap_or(&key.key);
     if key.is_section {
-        return format!("\n{}[{}]\n", wrapped(&key.text), key.key);
+        let header = if key.is_list { format!("[[{}]]", key.key) } else { format!("[{}]", key.key) };
+        // an optional section that the example leaves out would demand its required keys
+        let inside = format!("{}.", key.key);
+        let used = key.required || key.given_by_default || example.iter().any(|(k, _)| k.starts_with(&inside));
+        return format!("\n{}{}{header}\n", wrapped(&key.text), if used { "" } else { "# " });
     }
     let example = example.iter().find(|(k, _)| *k == key.key).map(|(_, v)| *v);
     let mut comment = key.text.clone();

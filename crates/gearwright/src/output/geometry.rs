@@ -18,16 +18,17 @@ pub fn body(model: &PairModel, position: &PositionResult, member: usize) -> Resu
     let body = &model.bodies()[member];
     let gear = model.pairing().gear(member);
     let (centre, angle) = placement(model, position, member);
-    let mesh = &body.sector(0).shape.mesh;
     let solid = model.is_solid();
     let layers: Vec<f64> = if solid {
         (0..=LAYERS).map(|k| gear.facewidth() * (k as f64 / LAYERS as f64 - 0.5)).collect()
     } else {
         vec![0.0]
     };
-    let (mut points, mut displacements) = (Vec::new(), Vec::new());
+    let (mut points, mut displacements, mut cells) = (Vec::new(), Vec::new(), Vec::new());
     let turn = Rotation2::new(angle);
     for sector in 0..gear.teeth() as usize {
+        let mesh = &body.sector(sector as i32).shape.mesh;
+        let (first, nodes) = (points.len() / 3, mesh.nodes.len());
         let own = Rotation2::new(angle + body.sector_angle() * sector as f64);
         for &z in &layers {
             for (node, place) in mesh.nodes.iter().enumerate() {
@@ -38,21 +39,15 @@ pub fn body(model: &PairModel, position: &PositionResult, member: usize) -> Resu
                 displacements.extend([planar.x * 1e6, planar.y * 1e6, u.z * 1e6]);
             }
         }
-    }
-    let (nodes, per_sector) = (mesh.nodes.len(), mesh.nodes.len() * layers.len());
-    let mut cells = Vec::new();
-    for sector in 0..gear.teeth() as usize {
-        for element in mesh.elements() {
-            for quad in sub_quads(element, mesh.order) {
-                let at = |layer: usize, node: u32| (sector * per_sector + layer * nodes) as u32 + node;
-                if solid {
-                    for layer in 0..LAYERS {
-                        cells.extend(quad.map(|n| at(layer, n)));
-                        cells.extend(quad.map(|n| at(layer + 1, n)));
-                    }
-                } else {
-                    cells.extend(quad.map(|n| at(0, n)));
+        let at = |layer: usize, node: u32| (first + layer * nodes) as u32 + node;
+        for quad in mesh.elements().flat_map(|element| sub_quads(element, mesh.order)) {
+            if solid {
+                for layer in 0..LAYERS {
+                    cells.extend(quad.map(|n| at(layer, n)));
+                    cells.extend(quad.map(|n| at(layer + 1, n)));
                 }
+            } else {
+                cells.extend(quad.map(|n| at(0, n)));
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Result files: tables, summary, ParaView files, and the folder that holds them.
 
+pub mod damage;
 pub mod folder;
 pub mod geometry;
 pub mod summary;

@@ -6,6 +6,7 @@ use fecm::statics::{ModelStats, PositionResult, PositionStatus, StaticsSeries};
 use gear_geom::{GearPair, Landmark, Landmarks, Member};
 use serde::Serialize;
 
+use super::damage::Effect;
 use crate::case::SpurPairCase;
 use crate::case::spur_pair::schema::SpurPair;
 
@@ -22,6 +23,9 @@ pub struct Summary<'a> {
     pub geometry: Geometry,
     /// What came out.
     pub results: Results,
+    /// Effect of each severity of damage.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    pub damage: &'a [Effect],
     /// Sizes and work.
     pub work: Work,
     /// Wall time of each stage (s).
@@ -132,6 +136,8 @@ pub struct Times {
     pub contact: f64,
     /// Force-deflection map.
     pub map: f64,
+    /// Damaged pairs, condensation and contact.
+    pub damage: f64,
     /// Plots and files.
     pub output: f64,
 }
@@ -249,7 +255,7 @@ pub fn work(stats: &ModelStats, series: &[&StaticsSeries]) -> Work {
 
 /// The one-screen summary.
 #[must_use]
-pub fn screen(case: &SpurPairCase, results: &Results, stats: &ModelStats, times: &Times) -> String {
+pub fn screen(case: &SpurPairCase, results: &Results, damage: &[Effect], stats: &ModelStats, times: &Times) -> String {
     use std::fmt::Write as _;
     let mut text = String::new();
     let pair = &case.pair;
@@ -291,6 +297,20 @@ pub fn screen(case: &SpurPairCase, results: &Results, stats: &ModelStats, times:
     for (status, count) in results.status.iter().filter(|(status, _)| **status != PositionStatus::Converged.name()) {
         line(&mut text, "not plainly converged", format!("{count} of {} positions: {status}", results.positions));
     }
+    for effect in damage {
+        line(
+            &mut text,
+            &effect.label,
+            format!(
+                "error up to {:.3} um at {:.2} ({:+.1} % at {:.2}), affected {:.2} mesh cycles",
+                effect.ste_max_um,
+                effect.ste_max_at,
+                effect.ste_increase_max_percent,
+                effect.ste_increase_max_at,
+                effect.affected_mesh_cycles
+            ),
+        );
+    }
     line(
         &mut text,
         "model",
@@ -305,11 +325,12 @@ pub fn screen(case: &SpurPairCase, results: &Results, stats: &ModelStats, times:
         &mut text,
         "time",
         format!(
-            "{:.2} s condensation, {:.2} s contact at {} positions{}, {:.2} s files",
+            "{:.2} s condensation, {:.2} s contact at {} positions{}{}, {:.2} s files",
             times.condensation,
             times.contact,
             results.positions,
             if times.map > 0.0 { format!(", {:.2} s force-deflection map", times.map) } else { String::new() },
+            if times.damage > 0.0 { format!(", {:.2} s damage", times.damage) } else { String::new() },
             times.output
         ),
     );

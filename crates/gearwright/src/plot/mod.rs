@@ -36,7 +36,8 @@ pub struct Line {
 }
 
 /// Colours of lines in order: black first, then distinct for colour-blind readers (Okabe and Ito).
-pub const COLOURS: [&str; 6] = ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00"];
+pub const COLOURS: [&str; 10] =
+    ["#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#882255", "#999933", "#6a3d9a"];
 
 /// A chart of lines.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,7 +67,7 @@ pub struct FlankMap {
     pub face: (f64, f64),
     /// Roll distances from and to (mm).
     pub roll: (f64, f64),
-    /// Values, rows from the largest roll distance down, columns along the face.
+    /// Values, rows from the smallest roll distance up, columns along the face.
     pub values: Vec<Vec<f64>>,
     /// Named roll distances (mm).
     pub landmarks: Vec<(String, f64)>,

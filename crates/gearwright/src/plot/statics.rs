@@ -71,6 +71,30 @@ pub fn mesh_stiffness(title: &str, series: &[PositionResult], origin: f64) -> Ch
     }
 }
 
+/// A quantity over the mesh cycle, several series compared.
+#[must_use]
+pub fn compared(
+    title: &str,
+    y_label: &str,
+    series: &[(&str, &[PositionResult])],
+    origin: f64,
+    value: impl Fn(&PositionResult) -> Option<f64>,
+) -> Chart {
+    let patterns = [Pattern::Solid, Pattern::Dashed, Pattern::DashDotted, Pattern::Dotted];
+    let lines = series.iter().enumerate().map(|(index, (name, results))| {
+        let usable = |r: &PositionResult| value(r).filter(|_| r.status.is_usable());
+        line(name, index, patterns[index % 4], over_cycle(results, origin, usable))
+    });
+    Chart {
+        title: title.into(),
+        x_label: CYCLE.into(),
+        y_label: y_label.into(),
+        lines: lines.collect(),
+        from_zero: false,
+        logarithmic: false,
+    }
+}
+
 /// A quantity of every tooth pair.
 #[must_use]
 pub fn per_pair(
@@ -148,9 +172,15 @@ fn selection(total: usize, count: usize) -> Vec<usize> {
     (0..count).map(|k| k * (total - 1) / (count - 1)).collect()
 }
 
-/// Largest pressure that each place of the pinion's flank sees over the positions (MPa).
+/// Largest pressure that each place of the pinion's flank sees over the positions (MPa), on the tooth pairs that `of_interest` picks.
 #[must_use]
-pub fn flank_pressure(title: &str, series: &[PositionResult], pair: &GearPair, mirrored: bool) -> Option<FlankMap> {
+pub fn flank_pressure(
+    title: &str,
+    series: &[PositionResult],
+    pair: &GearPair,
+    mirrored: bool,
+    of_interest: impl Fn(i32) -> bool,
+) -> Option<FlankMap> {
     const ROWS: usize = 120;
     let landmarks = pair.landmarks(Member::Pinion);
     let (low, high) = (landmarks.sap.roll_distance, landmarks.eap.roll_distance);
@@ -161,13 +191,13 @@ pub fn flank_pressure(title: &str, series: &[PositionResult], pair: &GearPair, m
     let columns = if mirrored { 2 * half } else { half };
     let span = patch.cell[1] * columns as f64;
     let mut values = vec![vec![0.0_f64; columns]; ROWS];
-    for patch in series.iter().flat_map(|r| &r.patches) {
+    for patch in series.iter().flat_map(|r| &r.patches).filter(|patch| of_interest(patch.pair)) {
         for (roll, pressures) in patch.pinion_roll.iter().zip(&patch.pressure) {
             // the cell's extent in roll distance
             let reach = 0.5 * patch.cell[0] * pair.pinion().base_radius() / roll.max(1e-9);
             let row_of =
-                |s: f64| ((high - s) / (high - low) * ROWS as f64).floor().clamp(0.0, ROWS as f64 - 1.0) as usize;
-            for row in row_of(roll + reach)..=row_of(roll - reach) {
+                |s: f64| ((s - low) / (high - low) * ROWS as f64).floor().clamp(0.0, ROWS as f64 - 1.0) as usize;
+            for row in row_of(roll - reach)..=row_of(roll + reach) {
                 for (j, pressure) in pressures.iter().enumerate() {
                     let value = pressure * 1e-6;
                     let mut put = |column: usize| values[row][column] = values[row][column].max(value);

@@ -8,7 +8,7 @@ use fecm::statics::{PairModel, PositionResult, StaticsRequest, StaticsSeries};
 
 use crate::case::SpurPairCase;
 use crate::output::folder::ResultsFolder;
-use crate::output::{geometry, summary, tables};
+use crate::output::{damage, geometry, summary, tables};
 use crate::plot::statics as figures;
 
 use super::{AsObserver, Finished, RunObserver};
@@ -51,10 +51,25 @@ pub fn run(case: &SpurPairCase, target: &Path, observer: &dyn RunObserver) -> an
         Some(map)
     };
 
+    let mut damaged = Vec::new();
+    for severity in &case.severities {
+        observer.stage(&severity.label);
+        // derived from the severity before: what a first unsymmetric one had to make anew is shared by the rest
+        let before = damaged.last().map_or(&model, |d: &Damaged| &d.model);
+        let model =
+            before.with_damage(&severity.damage).with_context(|| format!("{} cannot be modelled", severity.label))?;
+        let series = model
+            .solve(&request, &AsObserver(observer))
+            .with_context(|| format!("the contact with {} cannot be solved", severity.label))?;
+        times.damage += model.stats().condensation_time.as_secs_f64() + series.time.as_secs_f64();
+        damaged.push(Damaged { label: severity.label.clone(), model, series });
+    }
+
     observer.stage("writing results");
     let started = Instant::now();
     let results = summary::results(series, case.inputs.analysis.mesh_cycle_origin);
     write_tables(case, &folder, series, map.as_ref())?;
+    let effects = write_damage(case, &folder, series, &damaged)?;
     if case.inputs.output.vtu {
         write_grids(case, &folder, &model, series)?;
     }
@@ -62,20 +77,96 @@ pub fn run(case: &SpurPairCase, target: &Path, observer: &dyn RunObserver) -> an
         draw(case, &folder, series, map.as_ref(), stats.symmetric)?;
     }
     times.output = started.elapsed().as_secs_f64();
-    let all: Vec<&StaticsSeries> = std::iter::once(&solved).chain(map.as_ref()).collect();
+    let all: Vec<&StaticsSeries> =
+        std::iter::once(&solved).chain(map.as_ref()).chain(damaged.iter().map(|d| &d.series)).collect();
     let whole = summary::Summary {
         program: "gearwright",
         version: env!("CARGO_PKG_VERSION"),
         inputs: &case.inputs,
         geometry: summary::geometry(&case.pair),
         results: results.clone(),
+        damage: &effects,
         work: summary::work(&stats, &all),
         time_s: times,
     };
     std::fs::write(folder.file("summary.json"), serde_json::to_string_pretty(&whole)?)?;
-    let screen = summary::screen(case, &results, &stats, &times);
+    let screen = summary::screen(case, &results, &effects, &stats, &times);
     let unusable = all.iter().flat_map(|s| s.results.iter().flatten()).filter(|r| !r.status.is_usable()).count();
     Ok(Finished { folder: folder.publish()?, screen, unusable })
+}
+
+/// One severity, computed.
+struct Damaged {
+    label: String,
+    model: PairModel,
+    series: StaticsSeries,
+}
+
+impl Damaged {
+    /// Whether a tooth pair has a damaged tooth.
+    fn touches(&self, pair: i32) -> bool {
+        let (options, steps) = (self.model.options(), self.model.pairing().tooth_steps());
+        (0..2).any(|member| {
+            let teeth = i64::from(self.model.pairing().gear(member).teeth());
+            let own = i64::from(pair) * i64::from(steps[member]);
+            options.damage[member].iter().any(|damage| (own - damage.tooth).rem_euclid(teeth) == 0)
+        })
+    }
+}
+
+/// Tables, comparison plots and grids of the damaged pairs.
+fn write_damage(
+    case: &SpurPairCase,
+    folder: &ResultsFolder,
+    healthy: &[PositionResult],
+    damaged: &[Damaged],
+) -> anyhow::Result<Vec<damage::Effect>> {
+    let origin = case.inputs.analysis.mesh_cycle_origin;
+    let solved = || damaged.iter().filter_map(|d| d.series.results.first().map(|series| (d, series.as_slice())));
+    let effects: Vec<damage::Effect> =
+        solved().map(|(d, series)| damage::effect(&d.label, healthy, series, origin)).collect();
+    let Some((worst, worst_series)) = solved().last() else { return Ok(effects) };
+    damage::table(&folder.file("damage.csv"), &effects)?;
+    for (index, (_, series)) in solved().enumerate() {
+        tables::series(&folder.file(&format!("series_damage_{}.csv", index + 1)), series, origin)?;
+    }
+    if case.inputs.output.plots {
+        let title = case.inputs.title.as_str();
+        let named: Vec<(&str, &[PositionResult])> = std::iter::once(("healthy", healthy))
+            .chain(solved().map(|(d, series)| (d.label.as_str(), series)))
+            .collect();
+        let file = |name: &str| folder.file(name);
+        let save =
+            |chart: crate::plot::Chart, name: &str| chart.save(&file, name).map_err(|e| anyhow!("plot {name}: {e}"));
+        let ste = |r: &PositionResult| Some(r.static_transmission_error * 1e6);
+        save(figures::compared(title, "Transmission error (µm)", &named, origin, ste), "damage_transmission_error")?;
+        let stiffness = |r: &PositionResult| r.stiffness_local_slope.map(|k| k * 1e-6);
+        save(
+            figures::compared(title, "Mesh stiffness, local slope (N/µm)", &named, origin, stiffness),
+            "damage_mesh_stiffness",
+        )?;
+        let average = |r: &PositionResult| r.stiffness_average_slope.map(|k| k * 1e-6);
+        save(
+            figures::compared(title, "Mesh stiffness, average slope (N/µm)", &named, origin, average),
+            "damage_average_stiffness",
+        )?;
+        let heading = format!("Largest pressure on the pinion flank (MPa), {}", worst.label);
+        let symmetric = worst.model.stats().symmetric;
+        let map = figures::flank_pressure(&heading, worst_series, &case.pair, symmetric, |pair| worst.touches(pair));
+        if let Some(map) = map {
+            map.save(&file, "damage_flank_pressure").map_err(|e| anyhow!("plot damage_flank_pressure: {e}"))?;
+        }
+    }
+    if case.inputs.output.vtu
+        && let Some(position) = snapshot(case, worst_series)
+    {
+        let grid = |member: usize| geometry::body(&worst.model, position, member);
+        let (pinion, wheel) = rayon::join(|| grid(0), || grid(1));
+        pinion?.write(&folder.file("damage_pinion.vtu"))?;
+        wheel?.write(&folder.file("damage_gear.vtu"))?;
+        geometry::pressure(&worst.model, position).write(&folder.file("damage_contact_pressure.vtu"))?;
+    }
+    Ok(effects)
 }
 
 fn write_tables(
@@ -140,7 +231,7 @@ fn draw(
     save(figures::per_pair(title, "Peak pressure (MPa)", series, origin, |p| p.peak_pressure * 1e-6), "peak_pressure")?;
     save(figures::per_pair(title, "Contact width (mm)", series, origin, |p| p.contact_width * 1e3), "contact_width")?;
     if let Some(map) =
-        figures::flank_pressure("Largest pressure on the pinion flank (MPa)", series, &case.pair, mirrored)
+        figures::flank_pressure("Largest pressure on the pinion flank (MPa)", series, &case.pair, mirrored, |_| true)
     {
         map.save(&file, "flank_pressure").map_err(|e| anyhow!("plot flank_pressure: {e}"))?;
     }

@@ -1,5 +1,6 @@
 //! Kind `spur-pair`: contact statics of a gear pair over the mesh cycle.
 
+pub mod damage;
 pub mod resolve;
 pub mod schema;
 

@@ -9,6 +9,7 @@ use gear_geom::{
     ProfileRelief, ToothThickness,
 };
 
+use super::damage::{Severity, severities};
 use super::schema::{FilletShape, Form, Gear, HubCondition, Model, Modification, ReliefShape, Solver, SpurPair};
 use crate::case::document::Node;
 use crate::case::fault::Fault;
@@ -29,6 +30,8 @@ pub struct SpurPairCase {
     pub mesh_cycles: Vec<f64>,
     /// Torques of the force-deflection map (N m), ascending; empty for none.
     pub map_torques: Vec<f64>,
+    /// Damaged pairs to compute after the healthy one.
+    pub severities: Vec<Severity>,
 }
 
 /// Resolves a case; `folder` is where files it refers to are looked for.
@@ -63,7 +66,13 @@ pub fn resolve(mut inputs: SpurPair, document: &Node, folder: &Path) -> Result<S
     let wheel = gears.remove(1);
     let pinion = gears.remove(0);
     match GearPair::new(pinion, wheel, inputs.mesh.centre_distance_mm * MM) {
-        Ok(pair) => Ok(SpurPairCase { inputs, pair, options, mesh_cycles, map_torques }),
+        Ok(pair) => {
+            let severities = severities(&inputs, &pair, document, &mut faults);
+            if !faults.is_empty() {
+                return Err(faults);
+            }
+            Ok(SpurPairCase { inputs, pair, options, mesh_cycles, map_torques, severities })
+        }
         Err(errors) => Err(errors.0.iter().map(|e| geometry_fault(document, None, e)).collect()),
     }
 }

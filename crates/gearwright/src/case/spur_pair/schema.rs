@@ -26,6 +26,10 @@ pub struct SpurPair {
     /// What is computed.
     #[serde(default)]
     pub analysis: Analysis,
+    /// Damaged teeth, one section each: a root crack or a pit. Lists of values make a sweep: the pair is computed healthy and then for every
+    /// severity, all lists advancing together.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub damage: Vec<Damage>,
     /// Material of both gears.
     #[serde(default)]
     pub material: Material,
@@ -304,6 +308,125 @@ pub enum Model {
     PlaneStress,
     /// Plane strain.
     PlaneStrain,
+}
+
+/// One damage of one tooth.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Damage {
+    /// Which gear: "pinion" or "gear".
+    pub on: Member,
+    /// Tooth number; tooth 0 of either gear belongs to tooth pair 0, pinion teeth count backward and gear teeth forward from pair to pair.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 1999))]
+    pub tooth: u32,
+    /// A root crack through the whole face.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crack: Option<Crack>,
+    /// A pit on the working flank (3d only).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pit: Option<Pit>,
+}
+
+/// Gears of the pair.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Member {
+    /// The driving gear.
+    Pinion,
+    /// The driven gear.
+    Gear,
+}
+
+/// A root crack.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Crack {
+    /// Length in percent of the chord from fillet to fillet below the tooth, 0 to 97; a number, or a list for a sweep. Give this or `length_mm`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub length_percent: Option<Values>,
+    /// Length (mm); a number, or a list for a sweep.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub length_mm: Option<Values>,
+    /// Angle between the fillet's tangent at the start and the tooth's centre line (degrees; ISO 6336's critical section has 30); default:
+    /// the middle of the fillet's turn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 90.0))]
+    pub start_tangent_deg: Option<f64>,
+    /// Angle between the crack and the tooth's centre line, toward the axis (degrees; 90 is straight across); default: along the chord.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 120.0))]
+    pub direction_deg: Option<f64>,
+}
+
+/// A pit: an ellipse or a polygon. Heights and positions along the profile are roll distances, measured along the line of action.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Pit {
+    /// Landmark at which an ellipse is centred: "sap", "lpstc", "pitch", "hpstc", "eap" (of its own gear). Give this or `roll_distance_mm`;
+    /// default pitch.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<LandmarkName>,
+    /// Roll distance of the centre (mm).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 10000.0))]
+    pub roll_distance_mm: Option<f64>,
+    /// Face position of the centre (mm, 0 at mid-face).
+    #[serde(default)]
+    #[schemars(range(min = -10000.0, max = 10000.0))]
+    pub face_mm: f64,
+    /// Full width along the face (mm); a number, or a list for a sweep. Required for an ellipse.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub width_mm: Option<Values>,
+    /// Full height along the profile (mm); a number, or a list for a sweep. Required for an ellipse.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub height_mm: Option<Values>,
+    /// Face positions of the corners of a polygon (mm), instead of an ellipse.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub corners_face_mm: Vec<f64>,
+    /// Roll distances of the corners of a polygon (mm).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub corners_roll_distance_mm: Vec<f64>,
+    /// Depth (um); default: no contact inside, whatever the load.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 100000.0))]
+    pub depth_um: Option<f64>,
+}
+
+/// Landmarks of a flank.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum LandmarkName {
+    /// Start of active profile.
+    Sap,
+    /// Lowest point of single-tooth contact.
+    Lpstc,
+    /// Pitch point.
+    Pitch,
+    /// Highest point of single-tooth contact.
+    Hpstc,
+    /// End of active profile.
+    Eap,
+}
+
+/// A number, or a list of them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Values {
+    /// The same at every severity.
+    One(f64),
+    /// One for each severity.
+    Each(Vec<f64>),
+}
+
+impl JsonSchema for Values {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "Values".into()
+    }
+
+    fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
+        schemars::json_schema!({ "type": ["number", "array"], "items": { "type": "number" } })
+    }
 }
 
 /// Material of both gears.

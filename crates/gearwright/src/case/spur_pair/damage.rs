@@ -1,0 +1,229 @@
+//! Damage of a case: severities from its sections, with every fault at its key.
+
+use fecm::mesh::SectorMesh;
+use gear_geom::{CrackLength, FlankSide, GearPair, Pit, PitShape, RootCrack, ToothDamage};
+use nalgebra::Vector2;
+
+use super::schema::{Crack, Damage, LandmarkName, Member, Model, Pit as PitKeys, SpurPair, Values};
+use crate::case::document::Node;
+use crate::case::fault::Fault;
+
+const MM: f64 = 1e-3;
+const UM: f64 = 1e-6;
+
+/// One severity of a sweep.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Severity {
+    /// What distinguishes it, for legends.
+    pub label: String,
+    /// Damage of the pinion and of the gear.
+    pub damage: [Vec<ToothDamage>; 2],
+}
+
+/// Severities of a case, in order; none for a healthy one.
+pub fn severities(inputs: &SpurPair, pair: &GearPair, document: &Node, faults: &mut Vec<Fault>) -> Vec<Severity> {
+    let lists = inputs.damage.iter().flat_map(|damage| values_of(damage).into_iter().map(|(_, values)| values));
+    let count = lists.map(|values| if let Values::Each(list) = values { list.len() } else { 1 }).max().unwrap_or(1);
+    for (index, damage) in inputs.damage.iter().enumerate() {
+        for (name, values) in values_of(damage) {
+            if let Values::Each(list) = values
+                && list.len() != count
+            {
+                let message =
+                    format!("all lists of a sweep have the same length, here {count}; this one has {}", list.len());
+                faults.push(document.fault(&format!("damage[{}].{name}", index + 1), message));
+            }
+        }
+    }
+    if inputs.damage.is_empty() || !faults.is_empty() {
+        return Vec::new();
+    }
+    (0..count).filter_map(|k| severity(inputs, pair, k, document, faults)).collect()
+}
+
+/// Keys that may hold lists.
+fn values_of(damage: &Damage) -> Vec<(&'static str, &Values)> {
+    let crack = damage
+        .crack
+        .iter()
+        .flat_map(|c| [("crack.length_percent", &c.length_percent), ("crack.length_mm", &c.length_mm)]);
+    let pit = damage.pit.iter().flat_map(|p| [("pit.width_mm", &p.width_mm), ("pit.height_mm", &p.height_mm)]);
+    crack.chain(pit).filter_map(|(name, values)| values.as_ref().map(|values| (name, values))).collect()
+}
+
+fn at(values: &Values, severity: usize) -> f64 {
+    match values {
+        Values::One(value) => *value,
+        Values::Each(list) => list[severity],
+    }
+}
+
+fn severity(
+    inputs: &SpurPair,
+    pair: &GearPair,
+    index: usize,
+    document: &Node,
+    faults: &mut Vec<Fault>,
+) -> Option<Severity> {
+    let mut damage = [Vec::new(), Vec::new()];
+    let mut labels = Vec::new();
+    for (section, keys) in inputs.damage.iter().enumerate() {
+        let path = format!("damage[{}]", section + 1);
+        let before = faults.len();
+        let mut fault = |key: &str, message: String| {
+            let key = if key.is_empty() { path.clone() } else { format!("{path}.{key}") };
+            faults.push(document.fault(&key, message));
+        };
+        let member = if keys.on == Member::Pinion { gear_geom::Member::Pinion } else { gear_geom::Member::Wheel };
+        let gear = pair.gear(member);
+        if keys.tooth >= gear.teeth() {
+            fault("tooth", format!("this gear has teeth 0 to {}", gear.teeth() - 1));
+        }
+        let made = match (&keys.crack, &keys.pit) {
+            (Some(crack), None) => {
+                // the loaded flank's fillet opens; on the other side the faces would press on each other
+                let made = root_crack(crack, pair.working_side(member), index, &mut fault);
+                // the coarsest mesh tells whether the crack stays in the tooth
+                let density = fecm::MeshDensity { order: 1, density: 1.0 };
+                if let Some(Err(error)) = made.map(|crack| SectorMesh::with_crack(gear, &density, Some(&crack), "gear"))
+                {
+                    fault("crack", error.to_string());
+                }
+                made.map(gear_geom::Damage::Crack)
+            }
+            (None, Some(_)) if inputs.analysis.model != Model::Solid => {
+                fault("pit", "a pit varies along the face: it needs analysis.model = \"3d\"".into());
+                None
+            }
+            (None, Some(keys)) => pit(keys, pair, member, index, &mut fault).map(gear_geom::Damage::Pit),
+            _ => {
+                fault("", "give either a crack or a pit".into());
+                None
+            }
+        };
+        if faults.len() > before {
+            return None;
+        }
+        let slot = usize::from(keys.on == Member::Gear);
+        damage[slot].push(ToothDamage { tooth: i64::from(keys.tooth), damage: made? });
+        labels.push(label(keys, index));
+    }
+    Some(Severity { label: labels.join(", "), damage })
+}
+
+fn label(damage: &Damage, index: usize) -> String {
+    let show = |values: &Option<Values>| values.as_ref().map(|v| at(v, index));
+    match (&damage.crack, &damage.pit) {
+        (Some(crack), _) => match (show(&crack.length_percent), show(&crack.length_mm)) {
+            (Some(percent), _) => format!("crack {percent} %"),
+            (_, length) => format!("crack {} mm", length.unwrap_or_default()),
+        },
+        (_, Some(pit)) => match (show(&pit.width_mm), show(&pit.height_mm)) {
+            (Some(width), Some(height)) => format!("pit {width} x {height} mm"),
+            _ => "pit".into(),
+        },
+        _ => String::new(),
+    }
+}
+
+fn root_crack(keys: &Crack, side: FlankSide, index: usize, fault: &mut impl FnMut(&str, String)) -> Option<RootCrack> {
+    let length = match (&keys.length_percent, &keys.length_mm) {
+        (Some(percent), None) => {
+            let percent = at(percent, index);
+            if !(0.0..=97.0).contains(&percent) {
+                fault("crack.length_percent", format!("must be 0 to 97; {percent} is not"));
+                return None;
+            }
+            CrackLength::Chord(percent / 100.0)
+        }
+        (None, Some(length)) => {
+            let length = at(length, index);
+            if !(length >= 0.0 && length.is_finite()) {
+                fault("crack.length_mm", format!("must be 0 or more; {length} is not"));
+                return None;
+            }
+            CrackLength::Length(length * MM)
+        }
+        _ => {
+            fault("crack", "give either length_percent or length_mm".into());
+            return None;
+        }
+    };
+    let radians = |degrees: Option<f64>| degrees.map(f64::to_radians);
+    Some(RootCrack {
+        side,
+        start_tangent: radians(keys.start_tangent_deg),
+        direction: radians(keys.direction_deg),
+        length,
+    })
+}
+
+fn pit(
+    keys: &PitKeys,
+    pair: &GearPair,
+    member: gear_geom::Member,
+    index: usize,
+    fault: &mut impl FnMut(&str, String),
+) -> Option<Pit> {
+    let landmarks = pair.landmarks(member);
+    let shape = if keys.corners_face_mm.is_empty() && keys.corners_roll_distance_mm.is_empty() {
+        let roll = match (keys.at, keys.roll_distance_mm) {
+            (Some(_), Some(_)) => {
+                fault("pit", "give either at or roll_distance_mm".into());
+                return None;
+            }
+            (_, Some(roll)) => roll * MM,
+            (name, None) => {
+                let landmark = match name.unwrap_or(LandmarkName::Pitch) {
+                    LandmarkName::Sap => Some(landmarks.sap),
+                    LandmarkName::Lpstc => landmarks.lpstc,
+                    LandmarkName::Pitch => Some(landmarks.pitch),
+                    LandmarkName::Hpstc => landmarks.hpstc,
+                    LandmarkName::Eap => Some(landmarks.eap),
+                };
+                let Some(landmark) = landmark else {
+                    fault("pit.at", "a pair with a contact ratio of 2 or more has no single-tooth contact".into());
+                    return None;
+                };
+                landmark.roll_distance
+            }
+        };
+        let mut size = |name: &str, values: &Option<Values>| match values.as_ref().map(|v| at(v, index)) {
+            Some(value) if value >= 0.0 && value.is_finite() => Some(value * MM),
+            Some(value) => {
+                fault(name, format!("must be 0 or more; {value} is not"));
+                None
+            }
+            None => {
+                fault(name, "this key is required for an ellipse".into());
+                None
+            }
+        };
+        let size = Vector2::new(size("pit.width_mm", &keys.width_mm)?, size("pit.height_mm", &keys.height_mm)?);
+        PitShape::Ellipse { centre: Vector2::new(keys.face_mm * MM, roll), size }
+    } else {
+        let (face, roll) = (&keys.corners_face_mm, &keys.corners_roll_distance_mm);
+        if face.len() != roll.len() || face.len() < 3 {
+            fault(
+                "pit",
+                "a polygon needs corners_face_mm and corners_roll_distance_mm of the same length, 3 or more".into(),
+            );
+            return None;
+        }
+        PitShape::Polygon(face.iter().zip(roll).map(|(x, y)| Vector2::new(x * MM, y * MM)).collect())
+    };
+    let [face, roll] = shape.bounds();
+    let half = 0.5 * pair.gear(member).facewidth();
+    let ends = [landmarks.sap.roll_distance, landmarks.eap.roll_distance];
+    let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+    if face[0] > half || face[1] < -half || roll[0] > high || roll[1] < low {
+        let (low, high) = (low / MM, high / MM);
+        let half = half / MM;
+        fault(
+            "pit",
+            format!("lies off the active flank: face -{half} to {half} mm, roll distance {low:.3} to {high:.3} mm"),
+        );
+        return None;
+    }
+    Some(Pit { shapes: vec![shape], depth: keys.depth_um.map(|depth| depth * UM) })
+}

@@ -1,0 +1,134 @@
+//! Damage in case files: what a run leaves, and what is said of damage that cannot be.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+const PAIR: &str = r#"kind = "spur-pair"
+
+[mesh]
+module_mm = 6.0
+pressure_angle_deg = 20.0
+centre_distance_mm = 150.1
+
+[pinion]
+teeth = 25
+profile_shift = 0.0
+tip_diameter_mm = 162.0
+root_diameter_mm = 135.0
+bore_diameter_mm = 60.0
+facewidth_mm = 16.0
+
+[gear]
+teeth = 25
+profile_shift = 0.0
+tip_diameter_mm = 162.0
+root_diameter_mm = 135.0
+bore_diameter_mm = 60.0
+facewidth_mm = 16.0
+
+[load]
+torque_n_m = 200.0
+
+[analysis]
+positions_per_cycle = 8
+mesh_cycle_from = -1.0
+mesh_cycle_to = 1.0
+model = "MODEL"
+
+[numerics]
+face_cells = 16
+face_order = 4
+
+"#;
+
+fn run(folder: &Path, model: &str, damage: &str) -> Output {
+    std::fs::write(folder.join("case.toml"), PAIR.replace("MODEL", model) + damage).unwrap();
+    Command::new(env!("CARGO_BIN_EXE_gearwright")).args(["run", "case.toml"]).current_dir(folder).output().unwrap()
+}
+
+fn column(file: &Path, name: &str) -> Vec<f64> {
+    let mut table = csv::Reader::from_path(file).unwrap();
+    let index = table.headers().unwrap().iter().position(|header| header == name).unwrap();
+    table.records().map(|record| record.unwrap()[index].parse().unwrap()).collect()
+}
+
+#[test]
+fn sweep_of_cracks_and_pits_leaves_tables_plots_and_grids() {
+    for (model, damage, files) in [
+        ("plane-strain", "[[damage]]\non = \"pinion\"\ncrack.length_percent = [0.0, 20.0, 60.0]\n", 3),
+        ("3d", "[[damage]]\non = \"gear\"\npit.width_mm = [2.0, 8.0]\npit.height_mm = [1.0, 3.0]\n", 2),
+        (
+            "3d",
+            "[[damage]]\non = \"pinion\"\ncrack.length_mm = 3.0\n[[damage]]\non = \"gear\"\npit.at = \"hpstc\"\npit.width_mm = 4.0\npit.height_mm = 2.0\n",
+            1,
+        ),
+    ] {
+        let scratch = tempfile::tempdir().unwrap();
+        let output = run(scratch.path(), model, damage);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let folder = scratch.path().join("out/case");
+        let increase = column(&folder.join("damage.csv"), "ste_increase_max_percent");
+        assert_eq!(increase.len(), files);
+        assert!(increase.windows(2).all(|pair| pair[0] < pair[1]), "{increase:?}");
+        assert!(increase.last().unwrap() > &1.0, "{increase:?}");
+        let healthy = column(&folder.join("series.csv"), "ste_um");
+        for k in 1..=files {
+            let damaged = column(&folder.join(format!("series_damage_{k}.csv")), "ste_um");
+            assert_eq!(damaged.len(), healthy.len());
+            assert!(damaged.iter().zip(&healthy).all(|(d, h)| d > &(0.999 * h)));
+        }
+        if damage.contains("0.0, 20.0") {
+            assert_eq!(healthy, column(&folder.join("series_damage_1.csv"), "ste_um"), "no crack is healthy");
+        }
+        for name in [
+            "damage_transmission_error.png",
+            "damage_mesh_stiffness.svg",
+            "damage_pinion.vtu",
+            "damage_flank_pressure.png",
+        ] {
+            assert!(folder.join(name).metadata().unwrap().len() > 100, "{name}");
+        }
+    }
+}
+
+#[test]
+fn impossible_damage_is_explained_at_its_line() {
+    for (model, damage, wanted) in [
+        (
+            "3d",
+            "[[damage]]\non = \"pinion\"\ntooth = 25\ncrack.length_percent = 10.0\n",
+            &["case.toml:39", "tooth", "25", "0 to 24"][..],
+        ),
+        (
+            "3d",
+            "[[damage]]\non = \"pinion\"\ncrack.length_percent = 120.0\n",
+            &["case.toml:39", "crack.length_percent", "97"],
+        ),
+        ("3d", "[[damage]]\non = \"pinion\"\ncrack.length_mm = 50.0\n", &["case.toml:39", "crack", "chord"]),
+        ("3d", "[[damage]]\non = \"pinion\"\ncrack.length_mm = 2.0\ncrack.start_tangent_deg = 1.0\n", &["tangent"]),
+        (
+            "3d",
+            "[[damage]]\non = \"pinion\"\npit.roll_distance_mm = 99.0\npit.width_mm = 1.0\npit.height_mm = 1.0\n",
+            &["pit", "active flank"],
+        ),
+        ("plane-strain", "[[damage]]\non = \"pinion\"\npit.width_mm = 1.0\npit.height_mm = 1.0\n", &["pit", "3d"]),
+        ("3d", "[[damage]]\non = \"pinion\"\n", &["case.toml:37", "either a crack or a pit"]),
+        ("3d", "[[damage]]\non = \"wheel\"\ncrack.length_mm = 1.0\n", &["case.toml:38", "wheel", "gear"]),
+        ("3d", "[[damage]]\non = \"gear\"\ncrack.lenght_mm = 1.0\n", &["case.toml:39", "lenght_mm", "length_mm"]),
+        ("3d", "[damage]\non = \"gear\"\n", &["case.toml:37", "[[damage]]"]),
+        (
+            "3d",
+            "[[damage]]\non = \"pinion\"\npit.width_mm = [1.0, 2.0]\npit.height_mm = [1.0, 2.0, 3.0]\n",
+            &["case.toml:39", "same length", "3"],
+        ),
+    ] {
+        let scratch = tempfile::tempdir().unwrap();
+        let output = run(scratch.path(), model, damage);
+        let message = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(!output.status.success(), "{damage} was accepted");
+        for word in wanted {
+            assert!(message.contains(word), "{damage:?}: \"{word}\" is missing in: {message}");
+        }
+        assert!(!message.contains("panicked") && !scratch.path().join("out").exists(), "{message}");
+    }
+}
