@@ -4,6 +4,7 @@ use clap::{Parser, Subcommand};
 
 mod calculix;
 mod ci;
+mod dissertation;
 mod work_precision;
 
 #[derive(Parser)]
@@ -23,6 +24,12 @@ enum Command {
     },
     /// Static transmission error against CalculiX (program `ccx`, Debian package calculix-ccx); writes docs/reports/calculix.md.
     PeerCalculix,
+    /// Printed results of the dissertation against computed ones; writes docs/reports/dissertation-CHAPTER.md.
+    Dissertation {
+        /// What to compare.
+        #[arg(value_enum)]
+        chapter: dissertation::Chapter,
+    },
     /// Error against run time; writes docs/reports/work-precision-STUDY.md and plots.
     WorkPrecision {
         /// What to study.
@@ -35,6 +42,7 @@ fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::Ci { full } => ci::run(full),
         Command::PeerCalculix => calculix::run(),
+        Command::Dissertation { chapter } => dissertation::run(chapter),
         Command::WorkPrecision { study } => work_precision::run(study),
     }
 }

@@ -11,7 +11,8 @@ use fecm::ring::{Arc, ring_compliance};
 use fecm::statics::{PairModel, PairModelOptions, PositionResult, PositionStatus, StaticsRequest};
 use fecm::{FaceModel, FecmError, Material};
 use gear_geom::{
-    CrackLength, Damage, FlankSide, Gear, GearPair, GearSpec, Member, Pit, RootCrack, ToothDamage, ToothThickness,
+    CrackLength, Damage, FlankSide, Gear, GearPair, GearSpec, Member, Pit, ProfileMeasure, RootCrack, ToothDamage,
+    ToothThickness,
 };
 use nalgebra::Point2;
 
@@ -45,6 +46,11 @@ fn crack(tooth: i64, fraction: f64) -> ToothDamage {
     ToothDamage { tooth, damage: Damage::Crack(RootCrack::along_chord(FlankSide::Upper, fraction)) }
 }
 
+/// Heights in roll distance.
+fn ellipse(face: f64, roll: f64, width: f64, height: f64) -> Pit {
+    Pit::ellipse(face, roll, width, height, ProfileMeasure::RollDistance)
+}
+
 fn pit(tooth: i64, pit: Pit) -> ToothDamage {
     ToothDamage { tooth, damage: Damage::Pit(pit) }
 }
@@ -74,7 +80,7 @@ fn invariant_no_crack_and_no_pit_is_healthy_to_the_bit() {
 /// A model derived from a healthy one is the model made anew.
 #[test]
 fn invariant_derived_model_equals_the_one_made_anew() {
-    let damage = [vec![crack(0, 0.4), pit(0, Pit::ellipse(0.0, 0.026, 6e-3, 3e-3))], vec![crack(30, 0.2)]];
+    let damage = [vec![crack(0, 0.4), pit(0, ellipse(0.0, 0.026, 6e-3, 3e-3))], vec![crack(30, 0.2)]];
     for face in [FaceModel::PlaneStrain, FaceModel::Solid { order: 4 }] {
         let healthy = PairModel::new(&pair(), &options(face)).unwrap();
         let derived = healthy.with_damage(&damage).unwrap();
@@ -155,8 +161,8 @@ fn invariant_pit_on_either_flank() {
     let model = PairModel::new(&pair, &options(FaceModel::Solid { order: 4 })).unwrap();
     let roll = pair.pitch_roll();
     let opposite = pair.partner_roll(Member::Pinion, roll);
-    let on_pinion = model.with_damage(&[vec![pit(0, Pit::ellipse(0.0, roll, 9e-3, 3e-3))], vec![]]).unwrap();
-    let on_gear = model.with_damage(&[vec![], vec![pit(0, Pit::ellipse(0.0, opposite, 9e-3, 3e-3))]]).unwrap();
+    let on_pinion = model.with_damage(&[vec![pit(0, ellipse(0.0, roll, 9e-3, 3e-3))], vec![]]).unwrap();
+    let on_gear = model.with_damage(&[vec![], vec![pit(0, ellipse(0.0, opposite, 9e-3, 3e-3))]]).unwrap();
     for (a, b) in solve(&on_pinion, &[-0.05, 0.0, 0.05, 0.1]).iter().zip(&solve(&on_gear, &[-0.05, 0.0, 0.05, 0.1])) {
         let difference = a.static_transmission_error / b.static_transmission_error - 1.0;
         // the pit's rim falls between other cells
@@ -173,7 +179,7 @@ fn extreme_pits() {
     let roll = pair.pitch_roll();
     let landmarks = pair.landmarks(Member::Pinion);
     // the whole flank: the neighbours carry everything while they can reach
-    let whole = Pit::ellipse(0.0, roll, 1.0, 1.0);
+    let whole = ellipse(0.0, roll, 1.0, 1.0);
     let results = solve(&model.with_damage(&[vec![pit(0, whole)], vec![]]).unwrap(), &[-0.45, 0.45]);
     for at in &results {
         assert_eq!(at.status, PositionStatus::Converged);
@@ -182,11 +188,11 @@ fn extreme_pits() {
     }
     for one in [
         // smaller than a cell, at the tip, at the end of the face, beyond it, of some depth
-        Pit::ellipse(0.0, roll, 1e-5, 1e-5),
-        Pit::ellipse(0.0, landmarks.eap.roll_distance, 5e-3, 2e-3),
-        Pit::ellipse(8e-3, roll, 5e-3, 2e-3),
-        Pit::ellipse(9e-3, roll, 5e-3, 2e-3),
-        Pit { depth: Some(5e-6), ..Pit::ellipse(0.0, roll, 5e-3, 2e-3) },
+        ellipse(0.0, roll, 1e-5, 1e-5),
+        ellipse(0.0, landmarks.eap.roll_distance, 5e-3, 2e-3),
+        ellipse(8e-3, roll, 5e-3, 2e-3),
+        ellipse(9e-3, roll, 5e-3, 2e-3),
+        Pit { depth: Some(5e-6), ..ellipse(0.0, roll, 5e-3, 2e-3) },
     ] {
         let damaged = model.with_damage(&[vec![pit(0, one.clone())], vec![]]).unwrap();
         for at in solve(&damaged, &[-0.3, 0.0, 0.3, 0.6]) {
@@ -201,8 +207,8 @@ fn extreme_several_damages() {
     let model = PairModel::new(&pair(), &options(FaceModel::Solid { order: 4 })).unwrap();
     let roll = pair().pitch_roll();
     let together = [
-        vec![crack(0, 0.5), pit(0, Pit::ellipse(0.0, roll, 6e-3, 2e-3)), crack(1, 0.3), crack(-1, 0.2)],
-        vec![crack(0, 0.4), pit(1, Pit::ellipse(2e-3, roll, 6e-3, 2e-3))],
+        vec![crack(0, 0.5), pit(0, ellipse(0.0, roll, 6e-3, 2e-3)), crack(1, 0.3), crack(-1, 0.2)],
+        vec![crack(0, 0.4), pit(1, ellipse(2e-3, roll, 6e-3, 2e-3))],
     ];
     let healthy = solve(&model, &CYCLES);
     for (at, healthy) in solve(&model.with_damage(&together).unwrap(), &CYCLES).iter().zip(&healthy) {

@@ -1,7 +1,8 @@
 //! Damage of single teeth: root cracks and surface pits.
 //!
 //! A root crack starts on a fillet and runs into the tooth; a pit takes away contact surface. Both are said in the tooth's own terms: fillet
-//! tangent and path for cracks, roll distance and face position for pits (the dissertation measures pit heights along the line of action).
+//! tangent and path for cracks, roll distance and face position for pits. Heights of pits are arc lengths along the flank, or roll
+//! distances ([`ProfileMeasure`]): the two differ by the factor `s / r_b`, some 0.3 to 0.6.
 
 use nalgebra::Vector2;
 
@@ -46,15 +47,50 @@ impl RootCrack {
     }
 }
 
+/// How heights along the profile are measured.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum ProfileMeasure {
+    /// Arc length along the flank of a gear of this base radius (m): `s^2 / (2 r_b)`.
+    ArcLength {
+        /// Base radius (m).
+        base_radius: f64,
+    },
+    /// Roll distance, along the line of action.
+    #[default]
+    RollDistance,
+}
+
+impl ProfileMeasure {
+    /// Profile coordinate of a roll distance (m).
+    #[must_use]
+    pub fn at(self, roll: f64) -> f64 {
+        match self {
+            Self::ArcLength { base_radius } => roll * roll / (2.0 * base_radius),
+            Self::RollDistance => roll,
+        }
+    }
+
+    /// Roll distance of a profile coordinate (m), 0 below the base circle.
+    #[must_use]
+    pub fn roll(self, along: f64) -> f64 {
+        match self {
+            Self::ArcLength { base_radius } => (2.0 * base_radius * along).max(0.0).sqrt(),
+            Self::RollDistance => along,
+        }
+    }
+}
+
 /// Outline of a pit on a flank: `x` along the face (m, 0 at mid-face), `y` roll distance (m).
 #[derive(Debug, Clone, PartialEq)]
 pub enum PitShape {
     /// Ellipse.
     Ellipse {
-        /// Centre.
+        /// Centre: face position and roll distance.
         centre: Vector2<f64>,
-        /// Full width along the face and full height in roll distance (m).
+        /// Full width along the face and full height along the profile (m).
         size: Vector2<f64>,
+        /// What the height is measured along.
+        measure: ProfileMeasure,
     },
     /// Polygon of three or more corners.
     Polygon(Vec<Vector2<f64>>),
@@ -65,8 +101,9 @@ impl PitShape {
     #[must_use]
     pub fn contains(&self, face: f64, roll: f64) -> bool {
         match self {
-            Self::Ellipse { centre, size } => {
-                let (x, y) = (2.0 * (face - centre.x) / size.x, 2.0 * (roll - centre.y) / size.y);
+            Self::Ellipse { centre, size, measure } => {
+                let along = measure.at(roll) - measure.at(centre.y);
+                let (x, y) = (2.0 * (face - centre.x) / size.x, 2.0 * along / size.y);
                 x * x + y * y < 1.0
             }
             Self::Polygon(corners) => {
@@ -84,8 +121,10 @@ impl PitShape {
     #[must_use]
     pub fn bounds(&self) -> [[f64; 2]; 2] {
         match self {
-            Self::Ellipse { centre, size } => {
-                [[centre.x - 0.5 * size.x, centre.x + 0.5 * size.x], [centre.y - 0.5 * size.y, centre.y + 0.5 * size.y]]
+            Self::Ellipse { centre, size, measure } => {
+                let middle = measure.at(centre.y);
+                let roll = [-0.5, 0.5].map(|half| measure.roll(middle + half * size.y));
+                [[centre.x - 0.5 * size.x, centre.x + 0.5 * size.x], roll]
             }
             Self::Polygon(corners) => [0, 1].map(|axis| {
                 let values = corners.iter().map(|c| c[axis]);
@@ -114,11 +153,11 @@ pub struct Pit {
 }
 
 impl Pit {
-    /// One ellipse without contact inside.
+    /// One ellipse without contact inside: centre at a face position and roll distance, width along the face, height along the profile (m).
     #[must_use]
-    pub fn ellipse(face: f64, roll: f64, width: f64, height: f64) -> Self {
+    pub fn ellipse(face: f64, roll: f64, width: f64, height: f64, measure: ProfileMeasure) -> Self {
         let (centre, size) = (Vector2::new(face, roll), Vector2::new(width, height));
-        Self { shapes: vec![PitShape::Ellipse { centre, size }], depth: None }
+        Self { shapes: vec![PitShape::Ellipse { centre, size, measure }], depth: None }
     }
 
     /// Whether a place of the flank lies inside.
@@ -173,12 +212,17 @@ mod tests {
 
     #[test]
     fn analytic_area_of_an_ellipse_and_a_polygon() {
-        let pit = Pit::ellipse(1e-3, 5e-3, 4e-3, 2e-3);
+        let pit = Pit::ellipse(1e-3, 5e-3, 4e-3, 2e-3, ProfileMeasure::RollDistance);
         let exact = std::f64::consts::PI * 2e-3 * 1e-3 / (20e-3 * 10e-3);
         assert!((pit.area_fraction(20e-3, [0.0, 10e-3]) / exact - 1.0).abs() < 2e-3);
         let corners = [(0.0, 1e-3), (4e-3, 1e-3), (4e-3, 3e-3)].map(|(x, y)| Vector2::new(x, y)).to_vec();
         let triangle = Pit { shapes: vec![PitShape::Polygon(corners)], depth: None };
         assert!((triangle.area_fraction(20e-3, [0.0, 10e-3]) / (4e-6 / 200e-6) - 1.0).abs() < 5e-3);
+        // the same height as arc length reaches farther in roll distance, and farther down than up
+        let arc = Pit::ellipse(0.0, 16e-3, 4e-3, 2e-3, ProfileMeasure::ArcLength { base_radius: 35e-3 });
+        let [_, [low, high]] = arc.shapes[0].bounds();
+        assert!(16e-3 - low > high - 16e-3 && high - 16e-3 > 2e-3);
+        assert!(arc.contains(0.0, low + 1e-6) && !arc.contains(0.0, low - 1e-6) && arc.contains(0.0, high - 1e-6));
         assert!(triangle.contains(3.5e-3, 1.5e-3) && !triangle.contains(0.5e-3, 2.5e-3));
     }
 }

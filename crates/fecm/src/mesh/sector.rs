@@ -258,14 +258,24 @@ impl<'a> SectorBuilder<'a> {
             let upper = half.iter().rev().skip(1).map(|b| 1.0 - 0.5 * b);
             return lower.chain(upper).collect();
         };
-        // a part of the chord as long as the whole would have 8 elements, half of them graded toward the tip
+        // each part is fine at the crack's tip and at its flank, where the load comes in
         let part = |length: f64| {
-            let count = self.density.count((2.0 + 6.0 * length).round());
-            geometric_breaks(count, 1.7).into_iter().map(move |b| b * length)
+            let count = |base: f64, slope: f64| self.density.count((base + slope * length).round());
+            let from_tip = (0..count(1.0, 3.0)).map(|k| 1.7_f64.powi(k as i32));
+            let to_flank = (0..count(1.0, 2.0)).rev().map(|k| 1.5_f64.powi(k as i32));
+            let sizes: Vec<f64> = from_tip.chain(to_flank).collect();
+            let total: f64 = sizes.iter().sum();
+            let mut sum = 0.0;
+            let mut breaks = vec![0.0];
+            for size in sizes {
+                sum += size / total;
+                breaks.push(length * sum);
+            }
+            breaks
         };
-        let before: Vec<f64> = part(tip).map(|b| tip - b).collect();
-        let after = part(1.0 - tip).skip(1).map(|b| tip + b);
-        before.into_iter().rev().chain(after).collect()
+        let before = part(tip).into_iter().rev().map(|b| tip - b);
+        let after = part(1.0 - tip).into_iter().skip(1).map(|b| tip + b);
+        before.chain(after).collect()
     }
 
     fn half(&mut self, sign: f64) -> Result<Half, FecmError> {

@@ -1,10 +1,10 @@
 //! Damage of a case: severities from its sections, with every fault at its key.
 
 use fecm::mesh::SectorMesh;
-use gear_geom::{CrackLength, FlankSide, GearPair, Pit, PitShape, RootCrack, ToothDamage};
+use gear_geom::{CrackLength, FlankSide, GearPair, Pit, PitShape, ProfileMeasure, RootCrack, ToothDamage};
 use nalgebra::Vector2;
 
-use super::schema::{Crack, Damage, LandmarkName, Member, Model, Pit as PitKeys, SpurPair, Values};
+use super::schema::{Crack, Damage, HeightAlong, LandmarkName, Member, Model, Pit as PitKeys, SpurPair, Values};
 use crate::case::document::Node;
 use crate::case::fault::Fault;
 
@@ -200,7 +200,11 @@ fn pit(
             }
         };
         let size = Vector2::new(size("pit.width_mm", &keys.width_mm)?, size("pit.height_mm", &keys.height_mm)?);
-        PitShape::Ellipse { centre: Vector2::new(keys.face_mm * MM, roll), size }
+        let measure = match keys.height_along {
+            HeightAlong::Flank => ProfileMeasure::ArcLength { base_radius: pair.gear(member).base_radius() },
+            HeightAlong::LineOfAction => ProfileMeasure::RollDistance,
+        };
+        PitShape::Ellipse { centre: Vector2::new(keys.face_mm * MM, roll), size, measure }
     } else {
         let (face, roll) = (&keys.corners_face_mm, &keys.corners_roll_distance_mm);
         if face.len() != roll.len() || face.len() < 3 {

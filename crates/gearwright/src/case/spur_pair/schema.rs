@@ -359,7 +359,7 @@ pub struct Crack {
     pub direction_deg: Option<f64>,
 }
 
-/// A pit: an ellipse or a polygon. Heights and positions along the profile are roll distances, measured along the line of action.
+/// A pit: an ellipse or a polygon. Positions along the profile are roll distances, measured along the line of action.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Pit {
@@ -381,6 +381,9 @@ pub struct Pit {
     /// Full height along the profile (mm); a number, or a list for a sweep. Required for an ellipse.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub height_mm: Option<Values>,
+    /// What `height_mm` is measured along: "flank" (arc length on the tooth) or "line-of-action" (roll distance).
+    #[serde(default)]
+    pub height_along: HeightAlong,
     /// Face positions of the corners of a polygon (mm), instead of an ellipse.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub corners_face_mm: Vec<f64>,
@@ -391,6 +394,17 @@ pub struct Pit {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 100000.0))]
     pub depth_um: Option<f64>,
+}
+
+/// What the height of a pit is measured along.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum HeightAlong {
+    /// Arc length on the flank.
+    #[default]
+    Flank,
+    /// Roll distance.
+    LineOfAction,
 }
 
 /// Landmarks of a flank.
