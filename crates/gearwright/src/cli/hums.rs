@@ -17,7 +17,7 @@ const COMMAND_LINE: &str = "command line";
 #[derive(Debug, Args)]
 pub struct Flags {
     /// Case file of the kind "recording"; or give --signal, --teeth, and --tach or --speed-hz.
-    #[arg(required_unless_present = "signal", conflicts_with = "signal")]
+    #[arg(conflicts_with = "signal")]
     case: Option<PathBuf>,
     /// Recording (csv, tsv, txt, dat, asc, wav, npy, mat), or a folder of recordings for a trend.
     #[arg(long, value_name = "FILE|FOLDER")]
@@ -88,7 +88,11 @@ impl Flags {
     /// All faults of the case file, or of the flags.
     pub fn load(&self) -> anyhow::Result<(Case, PathBuf)> {
         let Some(signal) = &self.signal else {
-            let file = self.case.clone().unwrap_or_default();
+            let Some(file) = self.case.clone() else {
+                bail!(
+                    "give a case file, or --signal FILE with --teeth, and --tach or --speed-hz; see gearwright hums --help"
+                );
+            };
             return Ok((Case::Recording(Box::new(case::load_recording(&file)?)), file));
         };
         let text = toml::to_string(&self.written(signal)?).context("the flags cannot be written as a case")?;

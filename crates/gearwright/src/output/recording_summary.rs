@@ -115,7 +115,8 @@ pub fn screen(case: &RecordingCase, outcome: &Outcome) -> String {
     if outcome.is_trend {
         let unusable = outcome.entries.iter().filter(|entry| entry.measured.is_err()).count();
         let _ = write!(text, "trend      {} recordings", outcome.entries.len());
-        let _ = writeln!(text, "{}", if unusable > 0 { format!(", {unusable} of them unusable") } else { String::new() });
+        let _ =
+            writeln!(text, "{}", if unusable > 0 { format!(", {unusable} of them unusable") } else { String::new() });
     }
     let _ = writeln!(
         text,
@@ -123,10 +124,10 @@ pub fn screen(case: &RecordingCase, outcome: &Outcome) -> String {
         if outcome.is_trend { "last      " } else { "recording " },
         shown.name,
         shown.samples,
-        shown.rate,
+        plain(shown.rate),
         shown.samples as f64 / shown.rate
     );
-    let _ = write!(text, "shaft      {:.4} to {:.4} Hz", shown.speed.0, shown.speed.1);
+    let _ = write!(text, "shaft      {}", speed(shown.speed));
     let _ = match shown.pulses {
         Some(p) => writeln!(text, "; {} pulses, {} missing, {} extra", p.found, p.missing, p.extra),
         None => writeln!(text),
@@ -134,9 +135,9 @@ pub fn screen(case: &RecordingCase, outcome: &Outcome) -> String {
     if let Some(average) = shown.channels.iter().find_map(|c| c.average.as_ref().ok()) {
         let _ = writeln!(
             text,
-            "average    {} periods of {} turns, {} left out for gaps; {} mesh cycles a period",
+            "average    {} periods of {}, {} left out for gaps; {} mesh cycles a period",
             average.periods,
-            case.period_turns,
+            turns(case),
             average.skipped,
             case.rule.mesh_orders.first().copied().unwrap_or_default()
         );
@@ -195,7 +196,34 @@ fn alarm_lines(outcome: &Outcome, shown: &Measured) -> String {
         let table = if outcome.is_trend { "alarms.csv" } else { "indicators.csv" };
         text.push_str(&format!("  and {} more in {table}\n", lines.len() - LINES));
     }
-    if text.is_empty() { text } else { format!("\n{}:\n{text}", if outcome.is_trend { "alarms" } else { "above threshold" }) }
+    if text.is_empty() {
+        text
+    } else {
+        format!("\n{}:\n{text}", if outcome.is_trend { "alarms" } else { "above threshold" })
+    }
+}
+
+/// Slowest and fastest speed, or the one speed.
+fn speed((slowest, fastest): (f64, f64)) -> String {
+    if fastest - slowest <= 1e-6 * fastest {
+        format!("{} Hz", plain(fastest))
+    } else {
+        format!("{slowest:.4} to {fastest:.4} Hz between pulses")
+    }
+}
+
+/// Length of the averaging period in words.
+fn turns(case: &RecordingCase) -> String {
+    match (case.inputs.average.turns, case.inputs.average.per_turn) {
+        (1, 1) => "1 turn".into(),
+        (turns, 1) => format!("{turns} turns"),
+        (turns, parts) => format!("{turns}/{parts} turn"),
+    }
+}
+
+/// Seven significant digits, no zeros behind them.
+fn plain(value: f64) -> f64 {
+    format!("{value:.6e}").parse().unwrap_or(value)
 }
 
 /// Four significant digits.

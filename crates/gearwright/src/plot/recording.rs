@@ -13,7 +13,7 @@ const COLUMNS: usize = 900;
 const HARMONICS: usize = 4;
 /// Channels that get their own figures.
 const CHANNELS: usize = 16;
-/// Lowest amplitude drawn (dB below the largest).
+/// Lowest amplitude drawn at most (dB below the largest).
 const FLOOR: f64 = -120.0;
 /// Indicators that get a trend figure.
 const TRENDS: [(&str, &str); 9] = [
@@ -112,10 +112,17 @@ fn order_spectrum(case: &RecordingCase, channel: &Channel, detail: &Detail) -> M
     let largest = detail.amplitudes.iter().skip(1).copied().fold(f64::MIN_POSITIVE, f64::max);
     let order = |k: usize| k as f64 / case.period_turns;
     // A stick for each order: lines are exact, there is nothing between them.
-    let sticks = detail.amplitudes.iter().enumerate().take(highest + 1).skip(1).flat_map(|(k, a)| {
-        let level = (20.0 * (a / largest).log10()).max(FLOOR);
-        [(order(k), FLOOR), (order(k), level), (order(k), FLOOR)]
-    });
+    let levels: Vec<(usize, f64)> = detail
+        .amplitudes
+        .iter()
+        .enumerate()
+        .take(highest + 1)
+        .skip(1)
+        .map(|(k, a)| (k, (20.0 * (a / largest).log10()).max(FLOOR)))
+        .collect();
+    let lowest = levels.iter().map(|(_, level)| *level).fold(0.0, f64::min);
+    let floor = ((lowest / 10.0).floor() * 10.0).max(FLOOR);
+    let sticks = levels.iter().flat_map(|&(k, level)| [(order(k), floor), (order(k), level), (order(k), floor)]);
     let y_label = match case.inputs.signal.unit.as_str() {
         "" => format!("Amplitude (dB re {largest:.4})"),
         unit => format!("Amplitude (dB re {largest:.4} {unit})"),

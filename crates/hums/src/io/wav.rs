@@ -74,9 +74,9 @@ impl Layout {
                 samples.map(|s| f64::from(i32::from_le_bytes([s[0], s[1], s[2], s[3]])) / f64::from(1_u32 << 31)),
             ),
             Self::Float => out.extend(samples.map(|s| f64::from(f32::from_le_bytes([s[0], s[1], s[2], s[3]])))),
-            Self::Double => out.extend(
-                samples.map(|s| f64::from_le_bytes([s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7]])),
-            ),
+            Self::Double => {
+                out.extend(samples.map(|s| f64::from_le_bytes([s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7]])))
+            }
         }
     }
 }

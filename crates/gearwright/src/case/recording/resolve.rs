@@ -173,8 +173,9 @@ fn rule(inputs: &Recording, spacing: u32, document: &Node, faults: &mut Vec<Faul
     let pairs = inputs.difference.sideband_pairs as usize;
     if 2 * pairs * spacing >= mesh.max(2) {
         let most = mesh.saturating_sub(1) / (2 * spacing);
-        let message =
-            format!("must be at most {most}: with {mesh} mesh cycles a period, more sidebands would remove every order");
+        let message = format!(
+            "must be at most {most}: with {mesh} mesh cycles a period, more sidebands would remove every order"
+        );
         faults.push(document.fault("difference.sideband_pairs", message));
     }
     let rule = RemovalRule {
@@ -222,9 +223,7 @@ fn limits(
             faults.push(document.fault("thresholds.method", message));
             return None;
         }
-        (Method::MeanPlusSigmas, Some(set)) => {
-            LimitSource::Healthy(set, HealthyLimit::MeanPlusSigmas(written.sigmas))
-        }
+        (Method::MeanPlusSigmas, Some(set)) => LimitSource::Healthy(set, HealthyLimit::MeanPlusSigmas(written.sigmas)),
         (Method::Quantile, Some(set)) => LimitSource::Healthy(set, HealthyLimit::Quantile(written.quantile)),
     };
     (faults.len() == before).then_some(source)

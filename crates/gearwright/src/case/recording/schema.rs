@@ -47,8 +47,8 @@ pub enum Kind {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Signal {
-    /// Recording, beside the case file: csv, tsv, txt, dat, asc, wav, npy or mat. A folder of recordings, taken in the order of their
-    /// names, gives a trend.
+    /// Recording, beside the case file: csv, tsv, txt, dat, asc, wav, npy or mat.
+    /// A folder of recordings, taken in the order of their names, gives a trend.
     pub file: String,
     /// Channels to judge, by name or by number from 1, separated by commas, e.g. "3" or "gearbox x, gearbox y"; default: all that are
     /// neither tachometer nor time.
@@ -165,8 +165,8 @@ pub enum Edge {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gear {
-    /// Mesh cycles for each turn of the shaft of interest: its gear's number of teeth; of a planetary stage, seen from its carrier, the
-    /// ring's.
+    /// Number of teeth of the gear on the shaft of interest: mesh cycles for each of its turns.
+    /// Of a planetary stage whose carrier is the shaft of interest: teeth of the ring.
     #[schemars(range(min = 1, max = 100000))]
     pub teeth: u32,
 }

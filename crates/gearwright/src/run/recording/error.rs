@@ -79,7 +79,9 @@ pub enum RecordingError {
         source: HumsError,
     },
     /// The tachometer gives no shaft angle.
-    #[error("{path}: the tachometer ({what}) gives no shaft angle; check tachometer.channel or file (--tach), level and edge")]
+    #[error(
+        "{path}: the tachometer ({what}) gives no shaft angle; check tachometer.channel or file (--tach), level and edge"
+    )]
     Tachometer {
         /// Which file.
         path: PathBuf,
@@ -91,7 +93,7 @@ pub enum RecordingError {
     },
     /// The mesh is faster than the sampling resolves.
     #[error(
-        "{path}: {mesh:.1} mesh cycles a second are above half the sampling rate of {rate} Hz; check signal.rate_hz, the tachometer and gear.teeth"
+        "{path}: {mesh:.1} mesh cycles a second are above half the sampling rate of {rate:.6} Hz; check signal.rate_hz, the tachometer and gear.teeth"
     )]
     MeshTooFast {
         /// Which file.

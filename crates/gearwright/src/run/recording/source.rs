@@ -178,7 +178,8 @@ mod tests {
         assert_eq!(channel(&names, "3"), Some(2));
         assert_eq!(channel(&names, "0"), None);
         assert_eq!(channel(&names, "6"), None);
-        for (name, expected) in [("Time (s)", true), ("t", true), ("time_s", true), ("time of day", false), ("x", false)]
+        for (name, expected) in
+            [("Time (s)", true), ("t", true), ("time_s", true), ("time of day", false), ("x", false)]
         {
             assert_eq!(is_time(name), expected, "{name}");
         }

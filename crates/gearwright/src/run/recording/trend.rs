@@ -57,7 +57,7 @@ pub fn remember<'a>(recordings: impl Iterator<Item = &'a mut Measured>) {
     }
 }
 
-/// The alarms of a trend, in the order of channels and indicators.
+/// The alarms of a trend, in the order in which they came up.
 ///
 /// # Errors
 /// A rule with more hits than its window (the case has been checked).
@@ -92,6 +92,8 @@ pub fn alarm_log(trend: &[Entry], limits: &Limits, hits: usize, window: usize) -
             });
         }
     }
+    // As they came up; those of one recording in the order of channels and indicators.
+    log.sort_by_key(|alarm| alarm.raised_at);
     Ok(log)
 }
 
