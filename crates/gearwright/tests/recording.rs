@@ -372,7 +372,9 @@ fn gaps_cost_periods_not_the_recording() {
     assert!(!svg.contains("NaN"));
 }
 
-/// Flags, and what the message must name.
+/// Recording, flags in groups, and what the message must name.
+type Case<'a> = (&'a str, &'a [&'a [&'a str]], &'a [&'a str]);
+
 #[test]
 fn bad_input_is_one_message_with_a_remedy() {
     let scratch = Scratch::new();
@@ -386,7 +388,7 @@ fn bad_input_is_one_message_with_a_remedy() {
     let before = scratch.names();
     let gear = ["--teeth", "27"];
     let rate = ["--rate-hz", "5120"];
-    let cases: [(&str, &[&[&str]], &[&str]); 18] = [
+    let cases: [Case<'_>; 18] = [
         ("nowhere.csv", &[&gear, &rate, &["--tach", "2"]], &["nowhere.csv", "no such file", "--signal"]),
         ("rec.csv", &[&gear, &["--tach", "2"]], &["sampling rate", "--rate-hz", "signal.rate_hz"]),
         ("rec.csv", &[&gear, &rate, &["--tach", "taco"]], &["\"taco\"", "\"case\"", "\"tacho\""]),
@@ -459,4 +461,37 @@ fn an_interrupted_run_leaves_nothing() {
     let output = run.wait_with_output().unwrap();
     assert!(!output.status.success() && text(&output.stderr).contains("stopped"), "{}", text(&output.stderr));
     assert_eq!(scratch.names(), ["long.wav"]);
+}
+
+/// Every command of the how-to, in its order, on recordings of the names it uses.
+#[test]
+fn the_how_to_works() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/own-recording.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let scratch = Scratch::new();
+    let holds = Holds { noise: 0.1, ..Holds::default() };
+    let [x, tacho] = scratch.record("rec.csv", 20_480, holds, 1);
+    for k in 0..6 {
+        scratch.record(&format!("recordings/{k}.csv"), 10_240, holds, k);
+        scratch.record(&format!("healthy/{k}.csv"), 10_240, holds, 10 + k);
+    }
+    scratch.write("pulses.txt", &(0..40).map(|k| format!("{}\n", f64::from(k) / SPEED)).collect::<String>());
+    let spec =
+        hound::WavSpec { channels: 2, sample_rate: 5120, bits_per_sample: 24, sample_format: hound::SampleFormat::Int };
+    let mut wav = hound::WavWriter::create(scratch.path().join("rec.wav"), spec).unwrap();
+    for sample in x.iter().zip(&tacho).flat_map(|(x, t)| [x / 4.0, *t / 2.0]) {
+        wav.write_sample((sample * 8e6) as i32).unwrap();
+    }
+    wav.finalize().unwrap();
+    let mut count = 0;
+    for command in page.lines().filter_map(|line| line.strip_prefix("gearwright ")) {
+        succeed(scratch.path(), &command.split_whitespace().collect::<Vec<_>>());
+        count += 1;
+    }
+    assert!(count >= 12, "{count} commands");
+    for name in
+        ["rec/indicators.csv", "recordings/trend.csv", "recordings/alarms.csv", "recordings/trend_fm4_difference.svg"]
+    {
+        assert!(scratch.path().join("out").join(name).exists(), "{name}");
+    }
 }
