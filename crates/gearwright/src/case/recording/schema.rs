@@ -51,7 +51,7 @@ pub struct Signal {
     /// A folder of recordings, taken in the order of their names, gives a trend.
     pub file: String,
     /// Channels to judge, by name or by number from 1, separated by commas, e.g. "3" or "gearbox x, gearbox y"; default: all that are
-    /// neither tachometer nor time.
+    /// neither tachometer nor time. A name with a comma in it has to be given by its number.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub channels: String,
     /// Sampling rate (Hz); default: what the file states, or the step of its time column.

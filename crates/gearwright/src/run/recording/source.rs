@@ -27,11 +27,40 @@ pub fn recordings(path: &Path, key: &'static str) -> Result<Vec<PathBuf>, Record
     };
     let mut found: Vec<PathBuf> =
         entries.filter_map(|e| e.ok().map(|e| e.path())).filter(|p| p.is_file() && is_recording(p)).collect();
-    found.sort();
+    found.sort_by_cached_key(|file| natural(&file.file_name().unwrap_or_default().to_string_lossy()));
     if found.is_empty() {
         return Err(RecordingError::NoRecordings { path: path.into(), known: EXTENSIONS.join(", .") });
     }
     Ok(found)
+}
+
+/// Sort key of a name in which numbers count as numbers: "run 9" goes before "run 10". The name itself settles ties.
+fn natural(name: &str) -> (Vec<(u64, String)>, String) {
+    let mut parts: Vec<(u64, String)> = Vec::new();
+    let mut rest = name;
+    while !rest.is_empty() {
+        let text = rest.find(|c: char| c.is_ascii_digit()).unwrap_or(rest.len());
+        let (before, after) = rest.split_at(text);
+        let digits = after.find(|c: char| !c.is_ascii_digit()).unwrap_or(after.len());
+        if !before.is_empty() {
+            parts.push((u64::MAX, before.to_lowercase()));
+        }
+        if digits > 0 {
+            parts.push((after[..digits].parse().unwrap_or(u64::MAX - 1), String::new()));
+        }
+        rest = &after[digits..];
+    }
+    (parts, name.to_owned())
+}
+
+/// Names of channels, each once: a name that came before gets its column's number.
+fn told_apart(names: &[String]) -> Vec<String> {
+    let repeated = |column: usize| names[..column].contains(&names[column]);
+    names
+        .iter()
+        .enumerate()
+        .map(|(column, name)| if repeated(column) { format!("{name} ({})", column + 1) } else { name.clone() })
+        .collect()
 }
 
 /// Follows the bytes read, of all recordings together.
@@ -98,7 +127,7 @@ pub struct Layout {
 pub fn layout(file: &Path, case: &RecordingCase) -> Result<Layout, RecordingError> {
     let failed = |source| RecordingError::Read { path: file.into(), source };
     let mut reader = open_counted(file, &case.text, &Arc::default()).map_err(failed)?;
-    let names = reader.channels().to_vec();
+    let names = told_apart(reader.channels());
     let find = |wanted: &str| {
         channel(&names, wanted).ok_or_else(|| RecordingError::Channel {
             path: file.into(),
@@ -117,7 +146,14 @@ pub fn layout(file: &Path, case: &RecordingCase) -> Result<Layout, RecordingErro
     let columns: Vec<usize> = if case.channels.is_empty() {
         (0..names.len()).filter(|c| Some(*c) != tachometer && Some(*c) != time).collect()
     } else {
-        case.channels.iter().map(|name| find(name)).collect::<Result<_, _>>()?
+        let mut columns = Vec::new();
+        for name in &case.channels {
+            let column = find(name)?;
+            if !columns.contains(&column) {
+                columns.push(column);
+            }
+        }
+        columns
     };
     if columns.is_empty() {
         return Err(RecordingError::NoChannels { path: file.into(), known: listed(&names) });
@@ -168,6 +204,19 @@ fn is_time(name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_in_names_count_as_numbers() {
+        let mut names = ["run 10.csv", "run 9.csv", "Run 9b.csv", "7.csv", "run.csv", "run 010.csv"];
+        names.sort_by_cached_key(|name| natural(name));
+        assert_eq!(names, ["7.csv", "run 9.csv", "Run 9b.csv", "run 010.csv", "run 10.csv", "run.csv"]);
+    }
+
+    #[test]
+    fn equal_names_are_told_apart() {
+        let names = ["x", "y", "x", "x"].map(String::from);
+        assert_eq!(told_apart(&names), ["x", "y", "x (3)", "x (4)"]);
+    }
 
     #[test]
     fn channels_by_name_case_and_number() {
