@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use std::io::{BufRead as _, BufReader, Read as _};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -455,11 +456,16 @@ fn an_interrupted_run_leaves_nothing() {
         .stderr(std::process::Stdio::piped())
         .spawn()
         .unwrap();
-    std::thread::sleep(std::time::Duration::from_millis(700));
+    // The first line tells that reading has begun.
+    let mut told = String::new();
+    let mut errors = BufReader::new(run.stderr.take().unwrap());
+    errors.read_line(&mut told).unwrap();
+    assert!(told.contains("reading"), "{told}");
+    std::thread::sleep(std::time::Duration::from_millis(200));
     assert!(run.try_wait().unwrap().is_none(), "the run is too short for this test");
     assert!(Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap().success());
-    let output = run.wait_with_output().unwrap();
-    assert!(!output.status.success() && text(&output.stderr).contains("stopped"), "{}", text(&output.stderr));
+    errors.read_to_string(&mut told).unwrap();
+    assert!(!run.wait().unwrap().success() && told.contains("stopped"), "{told}");
     assert_eq!(scratch.names(), ["long.wav"]);
 }
 
@@ -494,4 +500,24 @@ fn the_how_to_works() {
     {
         assert!(scratch.path().join("out").join(name).exists(), "{name}");
     }
+}
+
+#[test]
+fn a_time_column_gives_the_rate_and_is_not_judged() {
+    let scratch = Scratch::new();
+    let [x, tacho] = recording(10_240, Holds { noise: 0.1, ..Holds::default() }, 8);
+    let time: Vec<f64> = (0..x.len()).map(|i| i as f64 / RATE).collect();
+    scratch.write("rec.csv", &csv_text("Time (s),x,x,tacho", &[&time, &x, &x, &tacho]));
+    let arguments = ["hums", "--signal", "rec.csv", "--teeth", "27", "--tach", "tacho", "--no-plots"];
+    let screen = succeed(scratch.path(), &arguments);
+    assert!(screen.contains("at 5120 Hz"), "{screen}");
+    let rows = table(&scratch.path().join("out/rec/indicators.csv"));
+    let channels: std::collections::BTreeSet<&str> = rows.iter().map(|r| r["channel"].as_str()).collect();
+    assert_eq!(channels.into_iter().collect::<Vec<_>>(), ["x", "x (3)"], "equal names are told apart");
+    let holed: Vec<f64> = time.iter().map(|t| if *t > 1.0 { t + 0.5 } else { *t }).collect();
+    scratch.write("holed.csv", &csv_text("t,x,tacho", &[&holed, &x, &tacho]));
+    let output = gearwright(scratch.path(), &["hums", "--signal", "holed.csv", "--teeth", "27", "--tach", "tacho"]);
+    let message = text(&output.stderr);
+    assert!(!output.status.success(), "a hole in the time column is no uniform rate");
+    assert!(message.contains("holed.csv") && message.contains("\"t\"") && message.contains("--rate-hz"), "{message}");
 }

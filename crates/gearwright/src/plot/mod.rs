@@ -81,6 +81,8 @@ pub struct MarkedChart {
     pub marks: Vec<Mark>,
     /// Abscissae from and to.
     pub x_range: Option<(f64, f64)>,
+    /// An ordinate that must be in sight.
+    pub y_up_to: Option<f64>,
 }
 
 /// A map of a quantity over a flank.
@@ -180,6 +182,14 @@ impl MarkedChart {
         let (plots, mut layout) = self.chart.draw();
         if let Some((from, to)) = self.x_range {
             layout = layout.with_x_axis_min(from).with_x_axis_max(to);
+        }
+        if let Some(wanted) = self.y_up_to {
+            let ordinates = || self.chart.lines.iter().flat_map(|line| &line.points).map(|point| point.1);
+            let (low, high) =
+                (ordinates().fold(f64::INFINITY, f64::min), ordinates().fold(f64::NEG_INFINITY, f64::max));
+            if high < wanted {
+                layout = layout.with_y_axis_max(wanted + 0.05 * (wanted - low));
+            }
         }
         for mark in &self.marks {
             let line = if mark.upright { ReferenceLine::vertical(mark.at) } else { ReferenceLine::horizontal(mark.at) };
