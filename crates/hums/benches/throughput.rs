@@ -4,7 +4,7 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use hums::difference::RemovalRule;
-use hums::indicator::{GearAnalyzer, SignalKind, signal_indicators};
+use hums::indicator::{GearAnalyzer, GearWorkspace, SignalKind, signal_indicators};
 use hums::resample::Interpolation;
 use hums::tachometer::Shaft;
 use hums::tsa::{TsaOptions, average};
@@ -39,6 +39,10 @@ fn indicators(c: &mut Criterion) {
         group.throughput(Throughput::Elements(samples as u64));
         group.bench_function(format!("all, average of {samples} samples"), |b| {
             b.iter(|| analyzer.analyze(black_box(&average)));
+        });
+        let mut workspace = GearWorkspace::default();
+        group.bench_function(format!("all, average of {samples} samples, in a workspace"), |b| {
+            b.iter(|| analyzer.analyze_with(black_box(&average), &mut workspace).is_ok());
         });
     }
     group.finish();

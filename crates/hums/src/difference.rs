@@ -171,6 +171,19 @@ pub struct SignalSet {
     pub spectrum: Spectrum,
 }
 
+impl SignalSet {
+    pub(crate) fn empty() -> Self {
+        Self { residual: Vec::new(), difference: Vec::new(), regular: Vec::new(), spectrum: Spectrum::empty() }
+    }
+}
+
+/// Buffers of [`Splitter::split`] that survive it.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct SplitBuffers {
+    kept: Vec<Complex<f64>>,
+    scratch: Vec<Complex<f64>>,
+}
+
 /// Splits averages of one length by one rule; transforms are planned once.
 #[derive(Clone)]
 pub struct Splitter {
@@ -215,6 +228,13 @@ impl Splitter {
     /// # Errors
     /// [`HumsError::LengthMismatch`] for another length than planned; non-finite samples.
     pub fn split(&self, average: &[f64]) -> Result<SignalSet> {
+        let mut signals = SignalSet::empty();
+        self.split_into(average, &mut SplitBuffers::default(), &mut signals)?;
+        Ok(signals)
+    }
+
+    /// As [`Self::split`], into signals that may hold an earlier result, whose memory is used again.
+    pub(crate) fn split_into(&self, average: &[f64], buffers: &mut SplitBuffers, out: &mut SignalSet) -> Result<()> {
         let n = self.forward.len();
         if average.len() != n {
             return Err(HumsError::LengthMismatch {
@@ -224,34 +244,31 @@ impl Splitter {
             });
         }
         require_finite("difference signal", average)?;
-        let mut input = average.to_vec();
-        let mut bins = self.forward.make_output_vec();
-        // One buffer of bins and one of scratch serve all transforms.
-        let length = self.forward.get_scratch_len().max(self.inverse.get_scratch_len());
-        let mut scratch = vec![Complex::new(0.0, 0.0); length];
-        let outcome = self.forward.process_with_scratch(&mut input, &mut bins, &mut scratch);
+        let SplitBuffers { kept, scratch } = buffers;
+        scratch.resize(self.forward.get_scratch_len().max(self.inverse.get_scratch_len()), Complex::new(0.0, 0.0));
+        // The transform destroys its input, whose place the residual then takes.
+        out.residual.clear();
+        out.residual.extend_from_slice(average);
+        let bins = out.spectrum.room(n);
+        let outcome = self.forward.process_with_scratch(&mut out.residual, bins, scratch);
         debug_assert!(outcome.is_ok());
-        let mut kept = bins.clone();
-        let residual = self.without(&self.residual_orders, &mut kept, &mut scratch, input);
-        let difference = if self.rule.sideband_pairs == 0 {
-            residual.clone()
+        kept.clear();
+        kept.extend_from_slice(bins);
+        self.without(&self.residual_orders, kept, scratch, &mut out.residual);
+        if self.rule.sideband_pairs == 0 {
+            out.difference.clone_from(&out.residual);
         } else {
-            kept.copy_from_slice(&bins);
-            let out = vec![0.0; n];
-            self.without(&self.difference_orders, &mut kept, &mut scratch, out)
-        };
-        let regular = average.iter().zip(&difference).map(|(x, d)| x - d).collect();
-        Ok(SignalSet { residual, difference, regular, spectrum: Spectrum::from_bins(bins, n) })
+            kept.copy_from_slice(bins);
+            out.difference.resize(n, 0.0);
+            self.without(&self.difference_orders, kept, scratch, &mut out.difference);
+        }
+        out.regular.clear();
+        out.regular.extend(average.iter().zip(&out.difference).map(|(x, d)| x - d));
+        Ok(())
     }
 
-    /// Signal of the bins without some orders; `kept` is used up.
-    fn without(
-        &self,
-        orders: &[usize],
-        kept: &mut [Complex<f64>],
-        scratch: &mut [Complex<f64>],
-        mut out: Vec<f64>,
-    ) -> Vec<f64> {
+    /// Signal of the bins without some orders, written over `out`; `kept` is used up.
+    fn without(&self, orders: &[usize], kept: &mut [Complex<f64>], scratch: &mut [Complex<f64>], out: &mut [f64]) {
         let n = out.len();
         for &order in orders {
             kept[order] = Complex::new(0.0, 0.0);
@@ -261,11 +278,10 @@ impl Splitter {
         if n % 2 == 0 {
             kept[n / 2].im = 0.0;
         }
-        let outcome = self.inverse.process_with_scratch(kept, &mut out, scratch);
+        let outcome = self.inverse.process_with_scratch(kept, out, scratch);
         debug_assert!(outcome.is_ok());
         let scale = 1.0 / n as f64;
         out.iter_mut().for_each(|x| *x *= scale);
-        out
     }
 }
 

@@ -97,6 +97,26 @@ pub(crate) fn band_analytic(
     half_width: usize,
     plan: &dyn Fft<f64>,
 ) -> Result<Vec<Complex<f64>>> {
+    let mut buffers = AnalyticBuffers::default();
+    band_analytic_into(bins, samples, carrier, half_width, plan, &mut buffers)?;
+    Ok(buffers.z)
+}
+
+/// An analytic signal and the work space of its transform, to be used again.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct AnalyticBuffers {
+    pub(crate) z: Vec<Complex<f64>>,
+    scratch: Vec<Complex<f64>>,
+}
+
+pub(crate) fn band_analytic_into(
+    bins: &[Complex<f64>],
+    samples: usize,
+    carrier: usize,
+    half_width: usize,
+    plan: &dyn Fft<f64>,
+    buffers: &mut AnalyticBuffers,
+) -> Result<()> {
     if half_width == 0 || half_width >= carrier {
         return Err(HumsError::Parameter {
             parameter: "half width of the band",
@@ -108,7 +128,8 @@ pub(crate) fn band_analytic(
     if 2 * upper >= samples {
         return Err(HumsError::OrderNotResolved { order: upper, highest: samples.saturating_sub(1) / 2, samples });
     }
-    Ok(one_sided_inverse(bins, samples, carrier - half_width..=upper, plan))
+    one_sided_inverse_into(bins, samples, carrier - half_width..=upper, plan, buffers);
+    Ok(())
 }
 
 /// Analytic signal of a range of one-sided bins: DC and Nyquist once, the others doubled.
@@ -118,13 +139,28 @@ fn one_sided_inverse(
     range: std::ops::RangeInclusive<usize>,
     plan: &dyn Fft<f64>,
 ) -> Vec<Complex<f64>> {
-    let mut z = vec![Complex::new(0.0, 0.0); samples];
+    let mut buffers = AnalyticBuffers::default();
+    one_sided_inverse_into(bins, samples, range, plan, &mut buffers);
+    buffers.z
+}
+
+fn one_sided_inverse_into(
+    bins: &[Complex<f64>],
+    samples: usize,
+    range: std::ops::RangeInclusive<usize>,
+    plan: &dyn Fft<f64>,
+    buffers: &mut AnalyticBuffers,
+) {
+    let AnalyticBuffers { z, scratch } = buffers;
+    let zero = Complex::new(0.0, 0.0);
+    z.clear();
+    z.resize(samples, zero);
     for k in range {
         let sides = if k == 0 || 2 * k == samples { 1.0 } else { 2.0 };
         z[k] = bins[k] * (sides / samples as f64);
     }
-    plan.process(&mut z);
-    z
+    scratch.resize(plan.get_inplace_scratch_len(), zero);
+    plan.process_with_scratch(z, scratch);
 }
 
 /// Plan for the way back of the analytic signal.
@@ -134,10 +170,17 @@ pub(crate) fn inverse_plan(samples: usize) -> Arc<dyn Fft<f64>> {
 
 /// Moduli `|z|`; without the care of `hypot` where squares can neither overflow nor vanish.
 pub(crate) fn moduli(z: &[Complex<f64>]) -> Vec<f64> {
+    let mut out = Vec::new();
+    moduli_into(z, &mut out);
+    out
+}
+
+pub(crate) fn moduli_into(z: &[Complex<f64>], out: &mut Vec<f64>) {
+    out.clear();
     let largest = z.iter().fold(0.0_f64, |m, v| m.max(v.re.abs()).max(v.im.abs()));
     if (1e-140..1e140).contains(&largest) {
-        z.iter().map(|v| v.norm_sqr().sqrt()).collect()
+        out.extend(z.iter().map(|v| v.norm_sqr().sqrt()));
     } else {
-        z.iter().map(|v| v.norm()).collect()
+        out.extend(z.iter().map(|v| v.norm()));
     }
 }

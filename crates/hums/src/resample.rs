@@ -391,7 +391,7 @@ fn no_overlap(what: &'static str) -> HumsError {
 }
 
 /// Samples per period so that no angle interval is longer than a time interval: the power of two at
-/// or above `rate * period_turns / slowest speed`.
+/// or above `rate * period_turns / slowest speed` (to 1e-9).
 ///
 /// # Errors
 /// [`HumsError::Parameter`] for a rate or period that is not positive, or above 2^26 samples.
@@ -406,5 +406,6 @@ pub fn samples_per_period(rate: f64, shaft: &Shaft, period_turns: f64) -> Result
             allowed: "at most 2^26",
         });
     }
-    Ok((needed.ceil() as usize).max(2).next_power_of_two())
+    // Rounding of the pulse times must not double the number.
+    Ok(((needed * (1.0 - 1e-9)).ceil() as usize).max(2).next_power_of_two())
 }

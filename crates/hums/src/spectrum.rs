@@ -77,8 +77,17 @@ impl Spectrum {
         Ok(Self { bins, samples: n, window_sum: weights.iter().sum() })
     }
 
-    pub(crate) fn from_bins(bins: Vec<Complex<f64>>, samples: usize) -> Self {
-        Self { bins, samples, window_sum: samples as f64 }
+    /// Without bins, to be filled.
+    pub(crate) fn empty() -> Self {
+        Self { bins: Vec::new(), samples: 0, window_sum: 1.0 }
+    }
+
+    /// Room for the bins of a rectangular window over `samples` samples.
+    pub(crate) fn room(&mut self, samples: usize) -> &mut [Complex<f64>] {
+        self.samples = samples;
+        self.window_sum = samples as f64;
+        self.bins.resize(samples / 2 + 1, Complex::new(0.0, 0.0));
+        &mut self.bins
     }
 
     /// Complex bins `X_0 .. X_(N/2)`, not normalised.

@@ -4,7 +4,7 @@
 //! recorded is a pulse channel, or pulse times, or only a nominal speed; pulses go missing and
 //! appear twice; the speed drifts.
 //!
-//! Method. (1) [`pulse_times`]: crossings of a level with hysteresis, placed between samples by
+//! Method. (1) [`pulse_times`], streamed by [`PulseFinder`]: crossings of a level with hysteresis, placed between samples by
 //! linear interpolation. (2) [`repair`]: pulses are matched one after the other to the interval
 //! predicted by the median of the last five: the candidate nearest to the prediction wins, others
 //! near it are extra; where none is, pulses are missing and the count jumps over them. (3)
@@ -64,38 +64,76 @@ pub fn pulse_times(channel: &[f64], rate: f64, options: &PulseOptions) -> Result
     let level = options.level.unwrap_or(min / 2.0 + max / 2.0);
     let band = options.hysteresis.unwrap_or((max / 2.0 - min / 2.0) / 2.0);
     require_positive("hysteresis", band)?;
-    let sign = match options.edge {
-        Edge::Rising => 1.0,
-        Edge::Falling => -1.0,
-    };
-    // In units where pulses rise through zero.
-    let lifted = |x: f64| sign * (x - level);
+    let mut finder = PulseFinder::new(rate, level, band, options.edge)?;
     let mut times = Vec::new();
-    let mut armed = false;
-    // Last upward crossing of the level since the trigger was armed.
-    let mut crossing = None;
-    let mut previous: Option<(usize, f64)> = None;
-    for (i, x) in channel.iter().enumerate().filter(|(_, x)| x.is_finite()) {
-        let y = lifted(*x);
-        if let Some((j, before)) = previous
-            && before < 0.0
-            && y >= 0.0
-        {
-            crossing = Some((j as f64 + (i - j) as f64 * (before / (before - y))) / rate);
-        }
-        if y <= -band / 2.0 {
-            armed = true;
-            crossing = None;
-        } else if y >= band / 2.0 && armed {
-            times.extend(crossing);
-            armed = false;
-        }
-        previous = Some((i, y));
-    }
+    finder.push(channel, &mut times);
     if times.is_empty() {
         return Err(tachometer("the channel has no pulse at this level", 0));
     }
     Ok(times)
+}
+
+/// [`pulse_times`] of a channel that arrives in pieces, its trigger level known. The times have the
+/// same bits however the channel is cut.
+#[derive(Debug, Clone)]
+pub struct PulseFinder {
+    rate: f64,
+    level: f64,
+    /// Half the hysteresis band.
+    half: f64,
+    /// Pulses rise through the level once multiplied by this.
+    sign: f64,
+    armed: bool,
+    /// Last upward crossing of the level since the trigger was armed.
+    crossing: Option<f64>,
+    /// Number of the last finite sample and its height over the level.
+    previous: Option<(usize, f64)>,
+    count: usize,
+}
+
+impl PulseFinder {
+    /// For a channel sampled at `rate` (Hz); `level` and the full width of the `hysteresis` band in
+    /// the channel's unit.
+    ///
+    /// # Errors
+    /// [`HumsError::Parameter`] for a rate or hysteresis that is not positive, or a level that is not
+    /// finite.
+    pub fn new(rate: f64, level: f64, hysteresis: f64, edge: Edge) -> Result<Self> {
+        require_positive("sampling rate", rate)?;
+        require_positive("hysteresis", hysteresis)?;
+        if !level.is_finite() {
+            return Err(HumsError::Parameter { parameter: "trigger level", value: level, allowed: "finite" });
+        }
+        let sign = match edge {
+            Edge::Rising => 1.0,
+            Edge::Falling => -1.0,
+        };
+        Ok(Self { rate, level, half: hysteresis / 2.0, sign, armed: false, crossing: None, previous: None, count: 0 })
+    }
+
+    /// Takes the next samples and appends the times of their pulses, s. Non-finite samples are passed
+    /// over.
+    pub fn push(&mut self, samples: &[f64], times: &mut Vec<f64>) {
+        let first = self.count;
+        self.count += samples.len();
+        for (k, x) in samples.iter().enumerate().filter(|(_, x)| x.is_finite()) {
+            let (i, y) = (first + k, self.sign * (x - self.level));
+            if let Some((j, before)) = self.previous
+                && before < 0.0
+                && y >= 0.0
+            {
+                self.crossing = Some((j as f64 + (i - j) as f64 * (before / (before - y))) / self.rate);
+            }
+            if y <= -self.half {
+                self.armed = true;
+                self.crossing = None;
+            } else if y >= self.half && self.armed {
+                times.extend(self.crossing);
+                self.armed = false;
+            }
+            self.previous = Some((i, y));
+        }
+    }
 }
 
 /// Pulse times freed of faults.

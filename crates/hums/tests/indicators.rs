@@ -6,7 +6,7 @@ use hums::HumsError;
 use hums::difference::RemovalRule;
 use hums::indicator::basic::{self, CrestDefinition};
 use hums::indicator::trend::{Memory, QuasiKurtosis};
-use hums::indicator::{GearAnalyzer, Indicator, SignalKind, signal_indicators};
+use hums::indicator::{GearAnalyzer, GearWorkspace, Indicator, SignalKind, signal_indicators};
 use hums::moments::{MomentAccumulator, Moments};
 use proptest::prelude::*;
 use std::f64::consts::TAU;
@@ -225,4 +225,23 @@ fn invariant_streamed_tables_have_the_same_bits() {
     let mut stream = hums::indicator::StreamingIndicators::new(SignalKind::Raw, 1.0);
     stream.push(&[1.0, 2.0]).unwrap();
     assert!(matches!(stream.push(&[1.0, f64::NAN]), Err(HumsError::NotFinite { index: 3, .. })));
+}
+
+/// One workspace for averages of several lengths and rules, among them one without mesh envelope (mesh order 1 has no band): every analysis
+/// has the bits of one in fresh memory.
+#[test]
+fn invariant_workspace_leaves_no_trace() {
+    let mut workspace = GearWorkspace::default();
+    for (samples, mesh, pairs) in [(1024, 27, 1), (512, 8, 0), (512, 1, 0), (1000, 31, 2), (1024, 27, 1)] {
+        let rule = RemovalRule::sidebands(mesh, pairs);
+        let analyzer = GearAnalyzer::new(samples, &rule).unwrap();
+        for seed in 1..3 {
+            let x = gaussian(samples, seed);
+            let fresh = analyzer.analyze(&x).unwrap();
+            assert_eq!(analyzer.analyze_with(&x, &mut workspace).unwrap(), &fresh, "{samples} {mesh}");
+        }
+        let mut bad = gaussian(samples, 3);
+        bad[5] = f64::NAN;
+        assert!(analyzer.analyze_with(&bad, &mut workspace).is_err());
+    }
 }

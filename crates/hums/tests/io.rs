@@ -159,6 +159,53 @@ fn analytic_wav_of_all_widths() {
     }
 }
 
+/// A WAV file put together by hand: form, format tag, bits, bytes a sample, stated data length, one channel of data; an odd chunk comes first.
+fn raw_wav(form: &[u8; 4], tag: u16, bits: u16, width: u16, stated: u32, data: &[u8]) -> Vec<u8> {
+    let mut bytes = form.to_vec();
+    bytes.extend(u32::MAX.to_le_bytes());
+    bytes.extend(b"WAVE");
+    if form == b"RF64" {
+        bytes.extend(b"ds64");
+        bytes.extend(28_u32.to_le_bytes());
+        bytes.extend(0_u64.to_le_bytes());
+        bytes.extend((data.len() as u64).to_le_bytes());
+        bytes.extend([0; 12]);
+    }
+    bytes.extend(b"LIST\x03\0\0\0abc\0");
+    bytes.extend(b"fmt \x10\0\0\0");
+    bytes.extend(tag.to_le_bytes());
+    bytes.extend(1_u16.to_le_bytes());
+    bytes.extend(1000_u32.to_le_bytes());
+    bytes.extend((1000 * u32::from(width)).to_le_bytes());
+    bytes.extend(width.to_le_bytes());
+    bytes.extend(bits.to_le_bytes());
+    bytes.extend(b"data");
+    bytes.extend(stated.to_le_bytes());
+    bytes.extend(data);
+    bytes
+}
+
+fn read_wav(bytes: Vec<u8>) -> Result<Recording, ReadError> {
+    read_all(&mut wav::WavRecording::new(Cursor::new(bytes))?)
+}
+
+#[test]
+fn analytic_wav_of_rare_layouts() {
+    // 64 bits float; the length was never filled in; a longer file than it says in RF64; 24 bits in four bytes.
+    let values = [0.1_f64, -1e-3, 2.5];
+    let data: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+    for (form, stated) in [(b"RIFF", 24), (b"RIFF", 0), (b"RIFF", u32::MAX), (b"RF64", u32::MAX)] {
+        assert_eq!(read_wav(raw_wav(form, 3, 64, 8, stated, &data)).unwrap().channels, [values.to_vec()]);
+    }
+    let wide = [0, 0, 0xc0, 0xff, 1, 0, 0, 0];
+    let read = read_wav(raw_wav(b"RIFF", 1, 24, 4, 8, &wide)).unwrap();
+    assert_eq!(read.channels, [vec![-0.5, 1.0 / 8_388_608.0]]);
+    assert_eq!(read.rate, Some(1000.0));
+    // Shorter than it says; compressed.
+    assert!(matches!(read_wav(raw_wav(b"RIFF", 1, 16, 2, 80, &wide)), Err(ReadError::Format { .. })));
+    assert!(matches!(read_wav(raw_wav(b"RIFF", 7, 8, 1, 8, &wide)), Err(ReadError::Format { .. })));
+}
+
 fn npy_bytes(descr: &str, fortran: bool, shape: &str, data: &[u8]) -> Vec<u8> {
     let order = if fortran { "True" } else { "False" };
     let mut header = format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': ({shape}), }}");

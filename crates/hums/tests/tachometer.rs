@@ -3,7 +3,7 @@
 mod common;
 use common::{close, uniform};
 use hums::HumsError;
-use hums::tachometer::{Edge, PulseOptions, Shaft, pulse_times, repair};
+use hums::tachometer::{Edge, PulseFinder, PulseOptions, Shaft, pulse_times, repair};
 
 /// Trapezoidal pulses with flanks of two samples about each time.
 fn channel(times: &[f64], rate: f64, samples: usize) -> Vec<f64> {
@@ -40,6 +40,27 @@ fn analytic_pulse_times_between_samples() {
     let falling = PulseOptions { edge: Edge::Falling, ..PulseOptions::default() };
     let down = pulse_times(&x, 2000.0, &falling).unwrap();
     assert!((down[3] - exact[3] - 0.01).abs() < 1e-12);
+}
+
+/// A channel in pieces of any size gives the same bits as in one.
+#[test]
+fn invariant_pulses_do_not_depend_on_pieces() {
+    let mut x = channel(&pulses(40, |k| 0.02 + 0.05 * k), 2000.0, 4200);
+    for (v, u) in x.iter_mut().zip(uniform(4200, 4)) {
+        *v += 0.8 * (u - 0.5);
+    }
+    x[777] = f64::NAN;
+    let options = PulseOptions { level: Some(2.2), hysteresis: Some(1.0), edge: Edge::Rising };
+    let whole = pulse_times(&x, 2000.0, &options).unwrap();
+    assert_eq!(whole.len(), 40);
+    for piece in [1, 7, 1000, 4200] {
+        let mut finder = PulseFinder::new(2000.0, 2.2, 1.0, Edge::Rising).unwrap();
+        let mut times = Vec::new();
+        x.chunks(piece).for_each(|part| finder.push(part, &mut times));
+        assert_eq!(times, whole, "{piece}");
+    }
+    assert!(PulseFinder::new(2000.0, f64::NAN, 1.0, Edge::Rising).is_err());
+    assert!(PulseFinder::new(2000.0, 1.0, 0.0, Edge::Rising).is_err());
 }
 
 #[test]

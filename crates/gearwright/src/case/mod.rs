@@ -7,6 +7,7 @@ pub mod check;
 pub mod document;
 pub mod fault;
 pub mod kind;
+pub mod recording;
 pub mod reference;
 pub mod spur_pair;
 pub mod template;
@@ -16,6 +17,7 @@ use std::path::Path;
 use serde::de::DeserializeOwned;
 
 pub use fault::{CaseFaults, Fault};
+pub use recording::RecordingCase;
 pub use spur_pair::SpurPairCase;
 
 /// A case file, checked and resolved.
@@ -24,6 +26,19 @@ pub use spur_pair::SpurPairCase;
 pub enum Case {
     /// Statics of a spur gear pair.
     SpurPair(Box<SpurPairCase>),
+    /// Condition indicators of recorded vibration.
+    Recording(Box<RecordingCase>),
+}
+
+impl Case {
+    /// Value of the key `kind`.
+    #[must_use]
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::SpurPair(_) => spur_pair::KIND.name,
+            Self::Recording(_) => recording::KIND.name,
+        }
+    }
 }
 
 /// Reads, checks and resolves a case file.
@@ -50,7 +65,25 @@ pub fn load(file: &Path) -> Result<Case, CaseFaults> {
 pub fn load_spur_pair(file: &Path) -> Result<SpurPairCase, CaseFaults> {
     match load(file)? {
         Case::SpurPair(case) => Ok(*case),
+        other => Err(wrong_kind(file, &other, "spur-pair")),
     }
+}
+
+/// Reads a case file that must be a recording.
+///
+/// # Errors
+/// All faults of the file, or its kind.
+pub fn load_recording(file: &Path) -> Result<RecordingCase, CaseFaults> {
+    match load(file)? {
+        Case::Recording(case) => Ok(*case),
+        other => Err(wrong_kind(file, &other, "recording")),
+    }
+}
+
+fn wrong_kind(file: &Path, case: &Case, wanted: &str) -> CaseFaults {
+    let message = format!("must be \"{wanted}\" here; `gearwright run` takes every kind");
+    let value = Some(format!("\"{}\"", case.kind()));
+    CaseFaults::new(file, vec![Fault { line: None, key: "kind".into(), value, message }])
 }
 
 /// Checks and resolves the text of a case file; `file` names it in faults, and files it refers to are looked for beside it.

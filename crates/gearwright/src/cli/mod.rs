@@ -9,6 +9,7 @@ use crate::case::kind::{self, CaseKind};
 use crate::case::{self, Case, reference, template};
 use crate::run;
 
+mod hums;
 mod progress;
 
 /// Spur gear contact from a TOML case file.
@@ -32,6 +33,8 @@ enum Command {
         #[arg(long)]
         threads: Option<usize>,
     },
+    /// Condition indicators of recorded vibration: averages, indicators, verdicts, trends.
+    Hums(Box<hums::Flags>),
     /// Validate a case without running it.
     Check {
         /// Case file.
@@ -39,7 +42,7 @@ enum Command {
     },
     /// Write a commented case file to start from.
     Init {
-        /// Kind of case: spur-pair.
+        /// Kind of case: spur-pair, recording.
         kind: String,
         /// File to write; default: <kind>.toml.
         file: Option<PathBuf>,
@@ -62,7 +65,11 @@ enum Command {
 /// What the user has to be told.
 pub fn execute(cli: &Cli) -> anyhow::Result<String> {
     match &cli.command {
-        Command::Run { case, out, threads } => run_case(case, out.as_deref(), *threads),
+        Command::Run { case, out, threads } => run_case(&case::load(case)?, case, out.as_deref(), *threads),
+        Command::Hums(flags) => {
+            let (loaded, file) = flags.load()?;
+            run_case(&loaded, &file, flags.out.as_deref(), flags.threads)
+        }
         Command::Check { case } => Ok(format!("{}{}: valid\n", about(&case::load(case)?), case.display())),
         Command::Init { kind, file } => init(kind, file.as_deref()),
         Command::Explain { key } => explain(key.as_deref()),
@@ -70,8 +77,8 @@ pub fn execute(cli: &Cli) -> anyhow::Result<String> {
     }
 }
 
-fn run_case(file: &Path, out: Option<&Path>, threads: Option<usize>) -> anyhow::Result<String> {
-    let loaded = case::load(file)?;
+/// Runs a case; `file` names its results.
+fn run_case(loaded: &Case, file: &Path, out: Option<&Path>, threads: Option<usize>) -> anyhow::Result<String> {
     let target = match out {
         Some(folder) => folder.to_path_buf(),
         None => Path::new("out").join(file.file_stem().unwrap_or_default()),
@@ -85,7 +92,7 @@ fn run_case(file: &Path, out: Option<&Path>, threads: Option<usize>) -> anyhow::
     }
     let pool = pool.build().context("threads cannot be started")?;
     let observer = progress::Terminal::new();
-    let finished = pool.install(|| run::run(&loaded, &target, &observer));
+    let finished = pool.install(|| run::run(loaded, &target, &observer));
     observer.finish();
     let finished = finished?;
     if finished.unusable > 0 {
@@ -115,6 +122,11 @@ fn about(case: &Case) -> String {
             let notes: String = case.pair.findings().iter().map(|f| format!("note: {f}\n")).collect();
             let (positions, ratio) = (case.mesh_cycles.len(), case.pair.contact_ratio());
             format!("{notes}{positions} positions, contact ratio {ratio:.3}\n")
+        }
+        Case::Recording(case) => {
+            let mesh = case.rule.mesh_orders.first().copied().unwrap_or_default();
+            let there = if case.signal.exists() { "" } else { " (not there yet)" };
+            format!("{}{there}: {mesh} mesh cycles in a period of {} turns\n", case.signal.display(), case.period_turns)
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Progress on the terminal: a bar where there is one, plain lines of stages otherwise.
 
 use std::io::IsTerminal;
-use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 
 use fecm::statics::Observer;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -12,12 +13,22 @@ use crate::run::RunObserver;
 pub struct Terminal {
     bar: Mutex<Option<ProgressBar>>,
     interactive: bool,
+    stopped: Arc<AtomicBool>,
 }
 
 impl Terminal {
-    /// A bar if standard error is a terminal.
+    /// A bar if standard error is a terminal. From now on, an interrupt (Ctrl-C) asks the run to stop and tidy up; a second one ends the
+    /// program at once.
     pub fn new() -> Self {
-        Self { bar: Mutex::new(None), interactive: std::io::stderr().is_terminal() }
+        let stopped = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&stopped);
+        // Without a handler an interrupt simply ends the program.
+        let _ = ctrlc::set_handler(move || {
+            if flag.swap(true, Ordering::Relaxed) {
+                std::process::exit(130);
+            }
+        });
+        Self { bar: Mutex::new(None), interactive: std::io::stderr().is_terminal(), stopped }
     }
 
     /// Clears the bar.
@@ -48,6 +59,10 @@ impl RunObserver for Terminal {
 }
 
 impl Observer for Terminal {
+    fn is_cancelled(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+
     fn advanced(&self, done: usize, total: usize) {
         if let Ok(bar) = self.bar.lock()
             && let Some(bar) = bar.as_ref()

@@ -34,6 +34,21 @@ pub enum FolderError {
 pub struct ResultsFolder {
     target: PathBuf,
     work: tempfile::TempDir,
+    // Goes after the folder in it has gone.
+    _parent: NewParent,
+}
+
+/// A folder made for the results to stand in: removed again if nothing came of them.
+#[derive(Debug)]
+struct NewParent(Option<PathBuf>);
+
+impl Drop for NewParent {
+    fn drop(&mut self) {
+        if let Some(parent) = &self.0 {
+            // Refused as long as anything is in it.
+            let _ = std::fs::remove_dir(parent);
+        }
+    }
 }
 
 impl ResultsFolder {
@@ -47,10 +62,11 @@ impl ResultsFolder {
             return Err(FolderError::Foreign { path: target.to_path_buf() });
         }
         let parent = target.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let _parent = NewParent((!parent.exists()).then(|| parent.to_path_buf()));
         std::fs::create_dir_all(parent).map_err(io)?;
         let work = tempfile::Builder::new().prefix(".gearwright-").tempdir_in(parent).map_err(io)?;
         std::fs::write(work.path().join(MARKER), "").map_err(io)?;
-        Ok(Self { target: target.to_path_buf(), work })
+        Ok(Self { target: target.to_path_buf(), work, _parent })
     }
 
     /// Where a file of the folder is written.

@@ -3,6 +3,8 @@
 pub mod damage;
 pub mod folder;
 pub mod geometry;
+pub mod recording;
+pub mod recording_summary;
 pub mod summary;
 pub mod tables;
 pub mod vtu;

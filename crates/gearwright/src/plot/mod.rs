@@ -1,5 +1,6 @@
 //! Figures: line charts and flank maps as SVG and PNG. The only place that names the plotting library.
 
+pub mod recording;
 pub mod statics;
 
 use std::path::Path;
@@ -54,6 +55,34 @@ pub struct Chart {
     pub from_zero: bool,
     /// Whether both axes are logarithmic.
     pub logarithmic: bool,
+}
+
+/// A straight line across a chart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mark {
+    /// Where.
+    pub at: f64,
+    /// Whether it stands upright at an abscissa; otherwise it lies at an ordinate.
+    pub upright: bool,
+    /// Label; empty for none.
+    pub label: String,
+    /// Colour.
+    pub colour: &'static str,
+    /// Whether it is dotted; otherwise dashed.
+    pub dotted: bool,
+}
+
+/// A chart with marks, and limits of its axes where they are not the lines' own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MarkedChart {
+    /// The chart.
+    pub chart: Chart,
+    /// Marks.
+    pub marks: Vec<Mark>,
+    /// Abscissae from and to.
+    pub x_range: Option<(f64, f64)>,
+    /// An ordinate that must be in sight.
+    pub y_up_to: Option<f64>,
 }
 
 /// A map of a quantity over a flank.
@@ -137,6 +166,42 @@ impl Chart {
             layout = layout.with_log_scale();
         }
         (plots, journal(layout))
+    }
+}
+
+impl MarkedChart {
+    /// Writes `name.svg` and `name.png`.
+    ///
+    /// # Errors
+    /// What the file system or the renderer says.
+    pub fn save(&self, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
+        save(|| self.draw(), folder, name)
+    }
+
+    fn draw(&self) -> (Vec<Plot>, Layout) {
+        let (plots, mut layout) = self.chart.draw();
+        if let Some((from, to)) = self.x_range {
+            layout = layout.with_x_axis_min(from).with_x_axis_max(to);
+        }
+        if let Some(wanted) = self.y_up_to {
+            let ordinates = || self.chart.lines.iter().flat_map(|line| &line.points).map(|point| point.1);
+            let (low, high) =
+                (ordinates().fold(f64::INFINITY, f64::min), ordinates().fold(f64::NEG_INFINITY, f64::max));
+            if high < wanted {
+                layout = layout.with_y_axis_max(wanted + 0.05 * (wanted - low));
+            }
+        }
+        for mark in &self.marks {
+            let line = if mark.upright { ReferenceLine::vertical(mark.at) } else { ReferenceLine::horizontal(mark.at) };
+            let mut line = line.with_color(mark.colour).with_stroke_width(0.8);
+            line = line.with_dasharray(if mark.dotted { "1 3" } else { "5 3" });
+            layout = layout.with_reference_line(if mark.label.is_empty() {
+                line
+            } else {
+                line.with_label(mark.label.clone())
+            });
+        }
+        (plots, layout)
     }
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use anyhow::{Context, anyhow};
+use anyhow::{Context, anyhow, bail};
 use fecm::statics::{PairModel, PositionResult, StaticsRequest, StaticsSeries};
 
 use crate::case::SpurPairCase;
@@ -65,6 +65,9 @@ pub fn run(case: &SpurPairCase, target: &Path, observer: &dyn RunObserver) -> an
         damaged.push(Damaged { label: severity.label.clone(), model, series });
     }
 
+    if observer.is_cancelled() {
+        bail!("stopped; nothing was written");
+    }
     observer.stage("writing results");
     let started = Instant::now();
     let results = summary::results(series, case.inputs.analysis.mesh_cycle_origin);

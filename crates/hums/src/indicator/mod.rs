@@ -11,8 +11,8 @@ pub mod basic;
 pub mod gear;
 pub mod trend;
 
-use crate::difference::{RemovalRule, SignalSet, Splitter};
-use crate::envelope::{band_analytic, inverse_plan, moduli};
+use crate::difference::{RemovalRule, SignalSet, SplitBuffers, Splitter};
+use crate::envelope::{AnalyticBuffers, band_analytic_into, inverse_plan, moduli_into};
 use crate::error::{HumsError, Result, require_finite};
 use crate::moments::{MomentAccumulator, Moments};
 use basic::{CrestDefinition, TeagerAccumulator};
@@ -282,6 +282,28 @@ impl GearAnalysis {
     }
 }
 
+/// Room for an analysis that is used again and again: averages of tens of thousands of samples then cost no
+/// new memory.
+#[derive(Debug, Clone)]
+pub struct GearWorkspace {
+    analysis: GearAnalysis,
+    split: SplitBuffers,
+    analytic: AnalyticBuffers,
+    /// The envelope's memory while an analysis has none.
+    envelope: Vec<f64>,
+}
+
+impl Default for GearWorkspace {
+    fn default() -> Self {
+        Self {
+            analysis: GearAnalysis { table: Vec::new(), signals: SignalSet::empty(), mesh_envelope: None },
+            split: SplitBuffers::default(),
+            analytic: AnalyticBuffers::default(),
+            envelope: Vec::new(),
+        }
+    }
+}
+
 impl GearAnalyzer {
     /// For averages of `samples` samples; the first mesh order of the rule is the gear's own, used
     /// by FM0, the sideband indicators and NB4.
@@ -297,16 +319,38 @@ impl GearAnalyzer {
     /// # Errors
     /// As [`Splitter::split`]; a quantity undefined for this signal is an `Err` in its entry.
     pub fn analyze(&self, average: &[f64]) -> Result<GearAnalysis> {
-        let signals = self.splitter.split(average)?;
+        let mut workspace = GearWorkspace::default();
+        self.analyze_with(average, &mut workspace)?;
+        Ok(workspace.analysis)
+    }
+
+    /// As [`Self::analyze`], bit for bit, in memory that earlier analyses used.
+    ///
+    /// # Errors
+    /// As [`Self::analyze`].
+    pub fn analyze_with<'w>(&self, average: &[f64], workspace: &'w mut GearWorkspace) -> Result<&'w GearAnalysis> {
+        let GearWorkspace { analysis, split, analytic, envelope: spare } = workspace;
+        let GearAnalysis { table, signals, mesh_envelope } = analysis;
+        self.splitter.split_into(average, split, signals)?;
         let rule = self.splitter.rule();
         let (mesh, spacing) = (rule.mesh_orders[0], rule.sideband_spacing.max(1));
         let of_average = Moments::of(average)?;
         let of_residual = Moments::of(&signals.residual)?;
         let of_difference = Moments::of(&signals.difference)?;
         let of_regular = Moments::of(&signals.regular)?;
-        let envelope = mesh_envelope(&signals, mesh, self.inverse.as_ref());
+        if let Some(last) = mesh_envelope.take() {
+            *spare = last;
+        }
+        // Band about the mesh fundamental that reaches half way to its neighbours.
+        let (bins, samples) = (signals.spectrum.bins(), signals.spectrum.samples());
+        let band = band_analytic_into(bins, samples, mesh, mesh / 2, self.inverse.as_ref(), analytic);
+        let envelope = band.map(|()| {
+            moduli_into(&analytic.z, spare);
+            std::mem::take(spare)
+        });
 
-        let mut table = statistics(average, &of_average, SignalKind::Average);
+        table.clear();
+        table.extend(statistics(average, &of_average, SignalKind::Average));
         let mut gear = |indicator, signal, value| {
             table.push(Entry { indicator, signal, value });
         };
@@ -348,7 +392,8 @@ impl GearAnalyzer {
                 }));
             }
         }
-        Ok(GearAnalysis { table, signals, mesh_envelope: envelope.ok() })
+        *mesh_envelope = envelope.ok();
+        Ok(analysis)
     }
 }
 
@@ -363,11 +408,4 @@ fn unless_rounding<'a>(part: &'a Moments, whole: &Moments) -> Result<&'a Moments
     } else {
         Ok(part)
     }
-}
-
-/// Envelope of the band about the mesh fundamental that reaches half way to its neighbours.
-fn mesh_envelope(signals: &SignalSet, mesh: usize, plan: &dyn Fft<f64>) -> Result<Vec<f64>> {
-    let samples = signals.spectrum.samples();
-    let z = band_analytic(signals.spectrum.bins(), samples, mesh, mesh / 2, plan)?;
-    Ok(moduli(&z))
 }

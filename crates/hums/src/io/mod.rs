@@ -6,7 +6,7 @@
 //! | format | streamed | notes |
 //! |---|---|---|
 //! | text ([`text`]) | yes | delimiter, decimal comma, header, units, comments found by themselves |
-//! | WAV ([`wav`]) | yes | 8 to 32 bits whole, 32 bits float; whole numbers scaled to -1..1 |
+//! | WAV ([`wav`]) | yes | 8 to 32 bits whole, 32 and 64 bits float; whole numbers scaled to -1..1 |
 //! | NPY ([`npy`]) | yes, if channels are interleaved | 1-D or 2-D; the longer axis is time |
 //! | MAT v5 ([`mat`]) | no: memory is the file's content | vectors and matrices of numbers |
 //!
@@ -21,8 +21,13 @@ pub mod text;
 pub mod wav;
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Extensions of the formats read.
+pub const EXTENSIONS: [&str; 9] = ["csv", "tsv", "txt", "dat", "asc", "wav", "wave", "npy", "mat"];
 
 /// Why a recording could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -111,23 +116,61 @@ pub struct Recording {
     pub channels: Vec<Vec<f64>>,
 }
 
+/// Whether a file has one of the [`EXTENSIONS`].
+#[must_use]
+pub fn is_recording(path: &Path) -> bool {
+    EXTENSIONS.contains(&extension(path).as_str())
+}
+
+fn extension(path: &Path) -> String {
+    path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
+}
+
 /// Opens a recording by its extension.
 ///
 /// # Errors
 /// [`ReadError`].
 pub fn open(path: &Path, options: &text::TextOptions) -> std::result::Result<Box<dyn BlockReader>, ReadError> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
-    let known = ["csv", "tsv", "txt", "dat", "asc", "wav", "wave", "npy", "mat"];
-    if !known.contains(&extension.as_str()) {
+    open_counted(path, options, &Arc::default())
+}
+
+/// As [`open`], and adds the bytes taken from the file to `bytes`, for progress.
+///
+/// # Errors
+/// [`ReadError`].
+pub fn open_counted(
+    path: &Path,
+    options: &text::TextOptions,
+    bytes: &Arc<AtomicU64>,
+) -> std::result::Result<Box<dyn BlockReader>, ReadError> {
+    if !is_recording(path) {
         return Err(ReadError::UnknownExtension { path: path.into() });
     }
-    let file = File::open(path).map_err(|source| ReadError::File { path: path.into(), source })?;
-    Ok(match extension.as_str() {
-        "wav" | "wave" => Box::new(wav::WavRecording::new(BufReader::new(file))?),
-        "npy" => npy::open(BufReader::new(file))?,
-        "mat" => Box::new(mat::read(BufReader::new(file))?),
+    let inner = File::open(path).map_err(|source| ReadError::File { path: path.into(), source })?;
+    let file = Counted { inner, bytes: Arc::clone(bytes) };
+    Ok(match extension(path).as_str() {
+        "wav" | "wave" => Box::new(wav::WavRecording::new(BufReader::with_capacity(BUFFER, file))?),
+        "npy" => npy::open(BufReader::with_capacity(BUFFER, file))?,
+        "mat" => Box::new(mat::read(BufReader::with_capacity(BUFFER, file))?),
         _ => Box::new(text::TextReader::new(file, options)?),
     })
+}
+
+/// Bytes taken from a file at a time.
+const BUFFER: usize = 1 << 17;
+
+/// A file that counts what is read from it.
+struct Counted {
+    inner: File,
+    bytes: Arc<AtomicU64>,
+}
+
+impl Read for Counted {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.inner.read(buffer)?;
+        self.bytes.fetch_add(count as u64, Ordering::Relaxed);
+        Ok(count)
+    }
 }
 
 /// Reads everything that is left.

@@ -1,0 +1,230 @@
+//! From keys to what the signal library takes: defaults filled in, orders of the averaging period worked out, faults told at their keys.
+//!
+//! Files are looked for when the case runs: a case may be written before its recording is made.
+
+use std::path::{Path, PathBuf};
+
+use hums::difference::{RemovalRule, whole_mesh_order};
+use hums::io::text::TextOptions;
+use hums::resample::Interpolation;
+use hums::tachometer::{Edge, PulseOptions};
+
+use super::schema::{self, Delimiter, Method, Recording};
+use crate::case::document::Node;
+use crate::case::fault::Fault;
+
+/// A recording case, ready to run.
+#[derive(Debug, Clone)]
+pub struct RecordingCase {
+    /// The case with every default filled in.
+    pub inputs: Recording,
+    /// Recording, or folder of recordings.
+    pub signal: PathBuf,
+    /// How text files are written.
+    pub text: TextOptions,
+    /// Channels to judge, by name or number; empty for all.
+    pub channels: Vec<String>,
+    /// How the shaft turned.
+    pub tachometer: TachometerSource,
+    /// Length of the averaging period (turns of the shaft of interest).
+    pub period_turns: f64,
+    /// How to interpolate.
+    pub interpolation: Interpolation,
+    /// Regular orders (cycles per period); the first mesh order is the gear's.
+    pub rule: RemovalRule,
+    /// Where thresholds come from.
+    pub limits: LimitSource,
+}
+
+/// How the shaft turned.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TachometerSource {
+    /// Pulses in a channel of the recording.
+    Channel(String, PulseOptions),
+    /// Times of pulses in a file, or in files of a folder.
+    File(PathBuf),
+    /// Constant speed (Hz).
+    Speed(f64),
+}
+
+/// Where thresholds come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LimitSource {
+    /// Values for Gaussian noise.
+    Gaussian,
+    /// A healthy set.
+    Healthy(HealthySet, HealthyLimit),
+}
+
+/// Which recordings are healthy.
+#[derive(Debug, Clone, PartialEq)]
+pub enum HealthySet {
+    /// Those of a folder.
+    Folder(PathBuf),
+    /// So many of the first of the trend.
+    First(usize),
+}
+
+/// What a healthy set says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum HealthyLimit {
+    /// Mean and so many standard deviations.
+    MeanPlusSigmas(f64),
+    /// Quantile.
+    Quantile(f64),
+}
+
+/// Resolves a case; `folder` is where files it refers to are looked for.
+///
+/// # Errors
+/// All faults that can be told together.
+pub fn resolve(mut inputs: Recording, document: &Node, folder: &Path) -> Result<RecordingCase, Vec<Fault>> {
+    let mut faults = Vec::new();
+    if inputs.signal.file.trim().is_empty() {
+        faults.push(document.fault("signal.file", "name a recording, or a folder of recordings"));
+    }
+    let spacing = *inputs.difference.sideband_spacing.get_or_insert(inputs.average.per_turn);
+    let channels: Vec<String> =
+        inputs.signal.channels.split(',').map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect();
+    let tachometer = tachometer(&inputs.tachometer, document, folder, &mut faults);
+    let rule = rule(&inputs, spacing, document, &mut faults);
+    let limits = limits(&mut inputs.thresholds, document, folder, &mut faults);
+    let (Some(tachometer), Some(rule), Some(limits), true) = (tachometer, rule, limits, faults.is_empty()) else {
+        return Err(faults);
+    };
+    let text = TextOptions {
+        delimiter: inputs.signal.delimiter.map(|delimiter| match delimiter {
+            Delimiter::Comma => b',',
+            Delimiter::Semicolon => b';',
+            Delimiter::Tab => b'\t',
+            Delimiter::Blank => b' ',
+        }),
+        decimal_comma: inputs.signal.decimal_comma,
+        header_lines: inputs.signal.header_lines.map(|lines| lines as usize),
+    };
+    Ok(RecordingCase {
+        signal: folder.join(inputs.signal.file.trim()),
+        text,
+        channels,
+        tachometer,
+        period_turns: f64::from(inputs.average.turns) / f64::from(inputs.average.per_turn),
+        interpolation: match inputs.average.interpolation {
+            schema::Interpolation::BandLimited => Interpolation::default(),
+            schema::Interpolation::CubicSpline => Interpolation::CubicSpline,
+            schema::Interpolation::Linear => Interpolation::Linear,
+        },
+        rule,
+        limits,
+        inputs,
+    })
+}
+
+fn tachometer(
+    written: &schema::Tachometer,
+    document: &Node,
+    folder: &Path,
+    faults: &mut Vec<Fault>,
+) -> Option<TachometerSource> {
+    if written.hysteresis.is_some_and(|width| width <= 0.0) {
+        faults.push(document.fault("tachometer.hysteresis", "must be above 0"));
+    }
+    let source = match (&written.channel, &written.file, written.speed_hz) {
+        (Some(channel), None, None) => {
+            let edge = match written.edge {
+                schema::Edge::Rising => Edge::Rising,
+                schema::Edge::Falling => Edge::Falling,
+            };
+            let options = PulseOptions { level: written.level, hysteresis: written.hysteresis, edge };
+            TachometerSource::Channel(channel.trim().to_owned(), options)
+        }
+        (None, Some(file), None) => TachometerSource::File(folder.join(file)),
+        (None, None, Some(speed)) => TachometerSource::Speed(speed),
+        (None, None, None) => {
+            let message = "give one of channel (pulses in the recording), file (times of pulses) and speed_hz";
+            faults.push(document.fault("tachometer", message));
+            return None;
+        }
+        _ => {
+            faults.push(document.fault("tachometer", "give only one of channel, file and speed_hz"));
+            return None;
+        }
+    };
+    Some(source)
+}
+
+/// Orders in cycles per averaging period.
+fn rule(inputs: &Recording, spacing: u32, document: &Node, faults: &mut Vec<Fault>) -> Option<RemovalRule> {
+    let before = faults.len();
+    let (turns, per_turn) = (u64::from(inputs.average.turns), u64::from(inputs.average.per_turn));
+    let per_period = |cycles: u32| (u64::from(cycles) * turns) as f64 / per_turn as f64;
+    let mesh = whole_mesh_order(per_period(inputs.gear.teeth)).map_err(|_| {
+        let message = format!(
+            "{} teeth make {} mesh cycles in a period of {turns}/{per_turn} turns, which must be a whole number; raise average.turns",
+            inputs.gear.teeth,
+            per_period(inputs.gear.teeth)
+        );
+        faults.push(document.fault("average.per_turn", message));
+    });
+    let spacing = whole_mesh_order(per_period(spacing)).map_err(|_| {
+        let message = format!("must be a whole number of cycles in a period of {turns}/{per_turn} turns");
+        faults.push(document.fault("difference.sideband_spacing", message));
+    });
+    let (Ok(mesh), Ok(spacing)) = (mesh, spacing) else { return None };
+    let pairs = inputs.difference.sideband_pairs as usize;
+    if 2 * pairs * spacing >= mesh.max(2) {
+        let most = mesh.saturating_sub(1) / (2 * spacing);
+        let message = format!(
+            "must be at most {most}: with {mesh} mesh cycles a period, more sidebands would remove every order"
+        );
+        faults.push(document.fault("difference.sideband_pairs", message));
+    }
+    let rule = RemovalRule {
+        mesh_orders: vec![mesh],
+        harmonics: inputs.difference.harmonics.map_or(usize::MAX, |count| count as usize),
+        sideband_pairs: pairs,
+        sideband_spacing: spacing,
+        shaft_orders: inputs.difference.shaft_orders as usize,
+        remove_mean: inputs.difference.remove_mean,
+    };
+    (faults.len() == before).then_some(rule)
+}
+
+fn limits(
+    written: &mut schema::Thresholds,
+    document: &Node,
+    folder: &Path,
+    faults: &mut Vec<Fault>,
+) -> Option<LimitSource> {
+    let before = faults.len();
+    if written.alarm_hits > written.alarm_window {
+        let message = format!("must be at most alarm_window = {}", written.alarm_window);
+        faults.push(document.fault("thresholds.alarm_hits", message));
+    }
+    let set = match (&written.healthy, written.healthy_first) {
+        (Some(_), Some(_)) => {
+            faults.push(document.fault("thresholds.healthy_first", "give either healthy or healthy_first, not both"));
+            return None;
+        }
+        (Some(name), None) => Some(HealthySet::Folder(folder.join(name))),
+        (None, Some(count)) => Some(HealthySet::First(count as usize)),
+        (None, None) => None,
+    };
+    let natural = if set.is_some() { Method::MeanPlusSigmas } else { Method::Gaussian };
+    let method = *written.method.get_or_insert(natural);
+    let source = match (method, set) {
+        (Method::Gaussian, None) => LimitSource::Gaussian,
+        (Method::Gaussian, Some(_)) => {
+            let message = "the method \"gaussian\" needs no healthy set; choose \"mean-plus-sigmas\" or \"quantile\"";
+            faults.push(document.fault("thresholds.method", message));
+            return None;
+        }
+        (_, None) => {
+            let message = "this method needs a healthy set: give thresholds.healthy or thresholds.healthy_first";
+            faults.push(document.fault("thresholds.method", message));
+            return None;
+        }
+        (Method::MeanPlusSigmas, Some(set)) => LimitSource::Healthy(set, HealthyLimit::MeanPlusSigmas(written.sigmas)),
+        (Method::Quantile, Some(set)) => LimitSource::Healthy(set, HealthyLimit::Quantile(written.quantile)),
+    };
+    (faults.len() == before).then_some(source)
+}

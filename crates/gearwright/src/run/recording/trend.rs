@@ -1,0 +1,106 @@
+//! Several recordings in order: indicators with a memory, alarms.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use hums::indicator::trend::QuasiKurtosis;
+use hums::threshold::{AlarmRule, Rate, alarms};
+
+use super::judge::Limits;
+use super::measure::{Measured, Row};
+
+/// A recording of a trend.
+#[derive(Debug)]
+pub struct Entry {
+    /// Name of the file.
+    pub name: String,
+    /// What it says, or why nothing.
+    pub measured: Result<Measured, String>,
+}
+
+/// An alarm: from its first recording until it was over.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Alarm {
+    /// Channel.
+    pub channel: String,
+    /// Indicator.
+    pub indicator: &'static str,
+    /// Signal it is computed from.
+    pub signal: &'static str,
+    /// Its threshold.
+    pub threshold: f64,
+    /// Number of the recording (from 1) that raised it, and its name.
+    pub raised_at: usize,
+    /// Its name.
+    pub raised_by: String,
+    /// Number of the first recording without alarm; none if it still stands.
+    pub cleared_at: Option<usize>,
+    /// Largest value meanwhile.
+    pub largest: f64,
+    /// Share of all recordings above the threshold.
+    pub share_above: f64,
+}
+
+/// Adds NA4 and NB4 with a memory over all recordings, those given first included.
+pub fn remember<'a>(recordings: impl Iterator<Item = &'a mut Measured>) {
+    let mut memories: BTreeMap<String, [QuasiKurtosis; 2]> = BTreeMap::new();
+    for channel in recordings.flat_map(|recording| &mut recording.channels) {
+        let Ok(average) = &channel.average else { continue };
+        let memory = memories.entry(channel.name.clone()).or_default();
+        let named = [("na4_running", "residual"), ("nb4_running", "mesh_envelope")];
+        for ((memory, moments), (indicator, signal)) in memory.iter_mut().zip(&average.memory).zip(named) {
+            let value = match moments {
+                Some(moments) => memory.update_moments(moments).map_err(|reason| reason.to_string()),
+                None => Err("this recording has no such signal".to_owned()),
+            };
+            channel.rows.push(Row { indicator, signal, value, nominal: None, standard_error: None });
+        }
+    }
+}
+
+/// The alarms of a trend, in the order in which they came up.
+///
+/// # Errors
+/// A rule with more hits than its window (the case has been checked).
+pub fn alarm_log(trend: &[Entry], limits: &Limits, hits: usize, window: usize) -> hums::Result<Vec<Alarm>> {
+    let usable = || trend.iter().filter_map(|entry| entry.measured.as_ref().ok());
+    // Every channel and indicator in the order of first appearance.
+    let mut quantities: Vec<(&str, &Row)> = Vec::new();
+    let mut seen = BTreeSet::new();
+    for (channel, row) in usable().flat_map(|m| &m.channels).flat_map(|c| c.rows.iter().map(move |r| (&c.name, r))) {
+        if seen.insert((channel, row.indicator, row.signal)) {
+            quantities.push((channel, row));
+        }
+    }
+    let mut log = Vec::new();
+    for (channel, quantity) in quantities {
+        let Some(limit) = limits.of(channel, quantity) else { continue };
+        let values: Vec<Option<f64>> = trend.iter().map(|entry| value(entry, channel, quantity)).collect();
+        let present: Vec<f64> = values.iter().flatten().copied().collect();
+        let rule = AlarmRule { threshold: limit.threshold, hits, window };
+        for range in alarms(&values, &rule)? {
+            let largest = values[range.clone()].iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
+            log.push(Alarm {
+                channel: channel.to_owned(),
+                indicator: quantity.indicator,
+                signal: quantity.signal,
+                threshold: limit.threshold,
+                raised_at: range.start + 1,
+                raised_by: trend[range.start].name.clone(),
+                cleared_at: (range.end < trend.len()).then_some(range.end + 1),
+                largest,
+                share_above: Rate::above(&present, limit.threshold)?.value(),
+            });
+        }
+    }
+    // As they came up; those of one recording in the order of channels and indicators.
+    log.sort_by_key(|alarm| alarm.raised_at);
+    Ok(log)
+}
+
+/// Value of an indicator in a recording.
+#[must_use]
+pub fn value(entry: &Entry, channel: &str, quantity: &Row) -> Option<f64> {
+    let channel = entry.measured.as_ref().ok()?.channels.iter().find(|c| c.name == channel)?;
+    let row = channel.rows.iter().find(|r| r.indicator == quantity.indicator && r.signal == quantity.signal)?;
+    row.value.as_ref().ok().copied()
+}

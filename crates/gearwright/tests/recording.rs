@@ -1,0 +1,523 @@
+//! `gearwright hums` as a user meets it, on recordings made here: what it finds, what it says of bad input, what it leaves behind.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::io::{BufRead as _, BufReader, Read as _};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use hums::difference::RemovalRule;
+use hums::indicator::GearAnalyzer;
+use hums::resample::samples_per_period;
+use hums::tachometer::{PulseOptions, Shaft};
+use hums::tsa::{TsaOptions, average, comb_gain};
+
+const RATE: f64 = 5120.0;
+const SPEED: f64 = 10.0;
+const TEETH: f64 = 27.0;
+
+fn gearwright(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_gearwright")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn succeed(folder: &Path, arguments: &[&str]) -> String {
+    let output = gearwright(folder, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", text(&output.stderr));
+    text(&output.stdout)
+}
+
+/// Numbers from -0.5 to 0.5, their sums nearly Gaussian.
+struct Noise(u64);
+
+impl Noise {
+    fn next(&mut self) -> f64 {
+        let uniform = (0..12).map(|_| {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        });
+        uniform.sum::<f64>() - 6.0
+    }
+}
+
+/// Amplitudes of what a recording holds besides its mesh.
+#[derive(Clone, Copy, Default)]
+struct Holds {
+    /// Ringing as one tooth passes.
+    knock: f64,
+    /// Tone of 40 cycles a turn.
+    tone: f64,
+    /// Tone of 33.37 cycles a turn: another shaft's.
+    foreign: f64,
+    /// RMS of noise.
+    noise: f64,
+}
+
+/// Vibration and tachometer (a trapezoid a turn, its flank on the sampling grid's times).
+fn recording(samples: usize, holds: Holds, seed: u64) -> [Vec<f64>; 2] {
+    let mut noise = Noise(seed);
+    let sample = |i: usize| {
+        let turn = i as f64 / RATE * SPEED;
+        let since = (turn - 0.4).rem_euclid(1.0) / SPEED;
+        holds.knock * (-200.0 * since).exp() * (TAU * 700.0 * since).sin()
+            + (TEETH * TAU * turn).sin()
+            + 0.3 * (2.0 * TEETH * TAU * turn).sin()
+            + holds.tone * (40.0 * TAU * turn).cos()
+            + holds.foreign * (33.37 * TAU * turn).cos()
+            + holds.noise * noise.next()
+    };
+    let vibration: Vec<f64> = (0..samples).map(sample).collect();
+    // Rises within 8 samples about each turn.
+    let pulse = |i: usize| {
+        let turn = (i as f64 / RATE * SPEED + 0.5).rem_euclid(1.0) - 0.5;
+        let place = turn / SPEED * RATE;
+        if place < 20.0 { (place / 8.0 + 0.5).clamp(0.0, 1.0) } else { 0.0 }
+    };
+    [vibration, (0..samples).map(pulse).collect()]
+}
+
+fn csv_text(header: &str, columns: &[&[f64]]) -> String {
+    let mut text = format!("{header}\n");
+    for i in 0..columns[0].len() {
+        let row: Vec<String> = columns.iter().map(|column| column[i].to_string()).collect();
+        text.push_str(&row.join(","));
+        text.push('\n');
+    }
+    text
+}
+
+struct Scratch(tempfile::TempDir);
+
+impl Scratch {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    fn write(&self, name: &str, content: &str) -> PathBuf {
+        let file = self.path().join(name);
+        std::fs::create_dir_all(file.parent().unwrap()).unwrap();
+        std::fs::write(&file, content).unwrap();
+        file
+    }
+
+    fn record(&self, name: &str, samples: usize, holds: Holds, seed: u64) -> [Vec<f64>; 2] {
+        let [x, tacho] = recording(samples, holds, seed);
+        self.write(name, &csv_text("case,tacho", &[&x, &tacho]));
+        [x, tacho]
+    }
+
+    fn names(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.path()).unwrap();
+        let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+}
+
+/// Rows of a table by column name.
+fn table(path: &Path) -> Vec<BTreeMap<String, String>> {
+    csv::Reader::from_path(path).unwrap().deserialize().map(|row| row.unwrap()).collect()
+}
+
+fn row<'a>(rows: &'a [BTreeMap<String, String>], indicator: &str, signal: &str) -> &'a BTreeMap<String, String> {
+    rows.iter().find(|row| row["indicator"] == indicator && row["signal"] == signal).unwrap()
+}
+
+/// Amplitude of a column of averages.csv at an order.
+fn amplitude(rows: &[BTreeMap<String, String>], column: &str, order: f64) -> f64 {
+    let values: Vec<f64> = rows.iter().map(|row| row[column].parse().unwrap()).collect();
+    let n = values.len() as f64;
+    let part = |wave: fn(f64) -> f64| {
+        values.iter().enumerate().map(|(k, x)| x * wave(TAU * order * k as f64 / n)).sum::<f64>() * 2.0 / n
+    };
+    part(f64::cos).hypot(part(f64::sin))
+}
+
+#[test]
+fn analytic_average_keeps_the_fault_tone_and_removes_the_foreign_one() {
+    let scratch = Scratch::new();
+    let holds = Holds { tone: 0.2, foreign: 0.5, ..Holds::default() };
+    // 60 turns and a bit: the first begins with the first pulse, which the record cuts in half.
+    scratch.record("rec.csv", 31_000, holds, 1);
+    let arguments = ["hums", "--signal", "rec.csv", "--rate-hz", "5120", "--teeth", "27", "--tach", "tacho"];
+    let screen = succeed(scratch.path(), &arguments);
+    assert!(screen.contains("results in out/rec") && screen.lines().count() < 25, "{screen}");
+    let out = scratch.path().join("out/rec");
+    let summary: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    let periods = summary["channels"]["case"]["average"]["periods"].as_u64().unwrap() as usize;
+    assert_eq!(periods, 59);
+    let rows = table(&out.join("averages.csv"));
+    // The foreign tone's leakage into order 40, and no more: the comb filter's gain at order 33.37.
+    let left = 0.5 * comb_gain(33.37, periods);
+    assert!(left < 0.02);
+    for column in ["case tsa", "case residual", "case difference"] {
+        let found = amplitude(&rows, column, 40.0);
+        assert!((found - 0.2).abs() < left, "{column}: {found}");
+    }
+    assert!((amplitude(&rows, "case tsa", 27.0) - 1.0).abs() < left);
+    assert!(amplitude(&rows, "case residual", 27.0) < 1e-9, "mesh harmonics leave the residual");
+    for name in ["signal", "order_spectrum", "difference"] {
+        let svg = std::fs::read_to_string(out.join(format!("{name}.svg"))).unwrap();
+        assert!(svg.contains("<svg") && !svg.contains("NaN"), "{name}.svg");
+        assert_eq!(&std::fs::read(out.join(format!("{name}.png"))).unwrap()[1..4], b"PNG", "{name}.png");
+    }
+}
+
+#[test]
+fn analytic_table_is_the_librarys() {
+    let scratch = Scratch::new();
+    let holds = Holds { knock: 0.5, noise: 0.1, ..Holds::default() };
+    let [x, tacho] = scratch.record("rec.csv", 20_480, holds, 2);
+    succeed(
+        scratch.path(),
+        &["hums", "--signal", "rec.csv", "--channel", "1", "--rate-hz", "5120", "--teeth", "27", "--tach", "2"],
+    );
+    let (shaft, _) = Shaft::from_channel(&tacho, RATE, 1.0, &PulseOptions::default()).unwrap();
+    let samples = samples_per_period(RATE, &shaft, 1.0).unwrap();
+    let average = average(&x, RATE, &shaft, &TsaOptions::per_turn(samples)).unwrap();
+    let analyzer = GearAnalyzer::new(samples, &RemovalRule::sidebands(27, 1)).unwrap();
+    let rows = table(&scratch.path().join("out/rec/indicators.csv"));
+    let analysis = analyzer.analyze(&average.samples).unwrap();
+    assert!(analysis.table.len() > 20);
+    for entry in &analysis.table {
+        let row = row(&rows, entry.indicator.name(), entry.signal.name());
+        match &entry.value {
+            // Twelve decimals are written.
+            Ok(value) => {
+                let written: f64 = row["value"].parse().unwrap();
+                assert!(
+                    (written - value).abs() <= 1e-12 * value.abs(),
+                    "{}: {written} {value}",
+                    entry.indicator.name()
+                );
+            }
+            Err(reason) => assert_eq!(row["reason"], reason.to_string()),
+        }
+    }
+    let rms = hums::indicator::basic::rms(&x).unwrap();
+    assert!((row(&rows, "rms", "raw")["value"].parse::<f64>().unwrap() / rms - 1.0).abs() < 1e-11);
+    assert_eq!(row(&rows, "fm4", "difference")["verdict"], "alarm", "a knock is not Gaussian");
+}
+
+#[test]
+fn healthy_noise_raises_no_alarm_and_a_case_file_says_what_flags_say() {
+    let scratch = Scratch::new();
+    scratch.record("rec.csv", 20_480, Holds { noise: 0.2, ..Holds::default() }, 3);
+    let flags = ["hums", "--signal", "rec.csv", "--rate-hz", "5120", "--teeth", "27", "--tach", "tacho", "--no-plots"];
+    let screen = succeed(scratch.path(), &[&flags[..], &["--out", "a", "--threads", "1"]].concat());
+    assert!(!screen.contains("above threshold"), "{screen}");
+    let case = "kind = \"recording\"\noutput.plots = false\ngear.teeth = 27\n\n[signal]\nfile = \"rec.csv\"\n\
+                rate_hz = 5120.0\n\n[tachometer]\nchannel = \"tacho\"\n";
+    scratch.write("case.toml", case);
+    succeed(scratch.path(), &["hums", "case.toml", "--out", "b"]);
+    succeed(scratch.path(), &["run", "case.toml", "--out", "c", "--threads", "2"]);
+    for name in ["indicators.csv", "averages.csv"] {
+        let read = |folder: &str| std::fs::read(scratch.path().join(folder).join(name)).unwrap();
+        assert!(read("a") == read("b") && read("b") == read("c"), "{name}");
+    }
+    let rows = table(&scratch.path().join("a/indicators.csv"));
+    let fm4 = row(&rows, "fm4", "difference");
+    assert_eq!((fm4["verdict"].as_str(), fm4["gaussian_value"].parse::<f64>().unwrap()), ("ok", 3.0));
+    assert!(!scratch.path().join("a/signal.svg").exists());
+}
+
+#[test]
+fn wav_states_its_rate_and_a_file_or_a_speed_stands_for_the_tachometer() {
+    let scratch = Scratch::new();
+    let [x, tacho] = recording(20_480, Holds { knock: 0.5, noise: 0.05, ..Holds::default() }, 4);
+    let spec = hound::WavSpec {
+        channels: 2,
+        sample_rate: 5120,
+        bits_per_sample: 32,
+        sample_format: hound::SampleFormat::Float,
+    };
+    let mut wav = hound::WavWriter::create(scratch.path().join("rec.wav"), spec).unwrap();
+    for (x, t) in x.iter().zip(&tacho) {
+        wav.write_sample(*x as f32).unwrap();
+        wav.write_sample(*t as f32).unwrap();
+    }
+    wav.finalize().unwrap();
+    let times: String = (0..41).map(|k| format!("{}\n", f64::from(k) / SPEED)).collect();
+    scratch.write("pulses.txt", &times);
+    let mut found = Vec::new();
+    let ways: [&[&str]; 4] = [
+        &["--tach", "channel 2"],
+        &["--tach", "pulses.txt"],
+        &["--speed-hz", "10"],
+        // A shaft of 30 Hz whose 27 teeth drive the 81 of ours.
+        &["--speed-hz", "30", "--gear-ratio", "27/81"],
+    ];
+    for (index, way) in ways.iter().enumerate() {
+        let out = index.to_string();
+        let base =
+            ["hums", "--signal", "rec.wav", "--channel", "channel 1", "--teeth", "27", "--no-plots", "--out", &out];
+        succeed(scratch.path(), &[&base[..], way].concat());
+        let rows = table(&scratch.path().join(&out).join("indicators.csv"));
+        found.push(row(&rows, "fm4", "difference")["value"].parse::<f64>().unwrap());
+    }
+    assert!(found[0] > 6.0, "{found:?}");
+    for value in &found {
+        // The ways differ by whether the first turn counts.
+        assert!((value / found[0] - 1.0).abs() < 0.05, "{found:?}");
+    }
+    // Exact pulse times are a constant speed.
+    assert!((found[1] / found[2] - 1.0).abs() < 1e-6, "{found:?}");
+}
+
+#[test]
+fn planet_passes_and_several_turns() {
+    let scratch = Scratch::new();
+    scratch.record("rec.csv", 40_960, Holds { noise: 0.1, ..Holds::default() }, 5);
+    let base = ["hums", "--signal", "rec.csv", "--rate-hz", "5120", "--tach", "tacho", "--no-plots", "--teeth", "27"];
+    let periods = |more: &[&str]| {
+        succeed(scratch.path(), &[&base[..], more].concat());
+        let summary = std::fs::read_to_string(scratch.path().join("out/rec/summary.json")).unwrap();
+        let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+        (summary["mesh_order"].as_u64().unwrap(), summary["channels"]["case"]["average"]["periods"].as_u64().unwrap())
+    };
+    assert_eq!(periods(&[]), (27, 78));
+    assert_eq!(periods(&["--per-turn", "3"]), (9, 3 * 78));
+    assert_eq!(periods(&["--turns", "3"]), (81, 26));
+    let output = gearwright(scratch.path(), &[&base[..], &["--per-turn", "2"]].concat());
+    let message = text(&output.stderr);
+    assert!(!output.status.success() && message.contains("13.5 mesh cycles"), "{message}");
+}
+
+#[test]
+fn trend_raises_alarms_after_the_healthy_ones_and_tells_what_it_cannot_use() {
+    let scratch = Scratch::new();
+    for k in 0..12_u32 {
+        let knock = f64::from(k.saturating_sub(7)) * 0.15;
+        let holds = Holds { knock, noise: 0.1, ..Holds::default() };
+        scratch.record(&format!("runs/day{k:02}.csv"), 12_000, holds, 10 + u64::from(k));
+    }
+    scratch.write("runs/day05b.csv", "case,tacho\n1.0,0\n2.0,1\n");
+    scratch.write("runs/notes.pdf", "not a recording");
+    let arguments =
+        ["hums", "--signal", "runs", "--rate-hz", "5120", "--teeth", "27", "--tach", "tacho", "--healthy-first", "6"];
+    let screen = succeed(scratch.path(), &arguments);
+    assert!(screen.contains("13 recordings, 1 of them unusable") && screen.contains("alarms:"), "{screen}");
+    assert!(screen.lines().count() < 25, "{screen}");
+    let out = scratch.path().join("out/runs");
+    let trend = table(&out.join("trend.csv"));
+    let fm4: Vec<_> = trend.iter().filter(|r| r["indicator"] == "fm4").collect();
+    assert_eq!(fm4.len(), 12);
+    assert!(fm4[..6].iter().all(|r| r["verdict"] == "ok"), "3 sigma of 6 is above all of them");
+    assert!(fm4[10..].iter().all(|r| r["verdict"] == "alarm"));
+    let unusable: Vec<_> = trend.iter().filter(|r| r["file"] == "day05b.csv").collect();
+    assert!(unusable.len() == 1 && unusable[0]["reason"].contains("tachometer"), "{unusable:?}");
+    let alarms = table(&out.join("alarms.csv"));
+    let alarm = row(&alarms, "fm4", "difference");
+    assert!(alarm["raised_by"].as_str() > "day07.csv" && alarm["cleared_at"].is_empty(), "{alarm:?}");
+    // A memory of healthy variances lets NA4 rise with the damage, where one record's kurtosis levels off.
+    let na4 = |name: &str| {
+        let rows: Vec<_> = trend.iter().filter(|r| r["indicator"] == name).collect();
+        rows.last().unwrap()["value"].parse::<f64>().unwrap()
+    };
+    assert!(na4("na4_running") > na4("na4"));
+    assert!(out.join("trend_fm4_difference.svg").exists() && out.join("averages.csv").exists());
+
+    // Limits of a folder, with their rate of false alarms.
+    let healthy = scratch.path().join("healthy");
+    std::fs::create_dir(&healthy).unwrap();
+    for k in 0..6 {
+        let name = format!("day{k:02}.csv");
+        std::fs::copy(scratch.path().join("runs").join(&name), healthy.join(&name)).unwrap();
+    }
+    let judge = [
+        "hums",
+        "--signal",
+        "runs/day11.csv",
+        "--rate-hz",
+        "5120",
+        "--teeth",
+        "27",
+        "--tach",
+        "tacho",
+        "--healthy",
+        "healthy",
+        "--quantile",
+        "0.5",
+        "--no-plots",
+    ];
+    succeed(scratch.path(), &judge);
+    let rows = table(&scratch.path().join("out/day11/indicators.csv"));
+    let fm4 = row(&rows, "fm4", "difference");
+    assert_eq!(fm4["false_alarm_rate"].parse::<f64>().unwrap(), 0.5, "half of the healthy are above their median");
+    assert_eq!(fm4["verdict"], "alarm");
+}
+
+#[test]
+fn gaps_cost_periods_not_the_recording() {
+    let scratch = Scratch::new();
+    let [mut x, tacho] = recording(20_480, Holds { noise: 0.1, ..Holds::default() }, 6);
+    for gap in [5000..5003, 10_000..10_900] {
+        x[gap].fill(f64::NAN);
+    }
+    scratch.write("rec.csv", &csv_text("case,tacho", &[&x, &tacho]));
+    let screen =
+        succeed(scratch.path(), &["hums", "--signal", "rec.csv", "--rate-hz", "5120", "--teeth", "27", "--tach", "2"]);
+    assert!(screen.contains("903 samples missing"), "{screen}");
+    let rows = table(&scratch.path().join("out/rec/indicators.csv"));
+    assert!(row(&rows, "rms", "raw")["reason"].contains("5000"));
+    assert!(!row(&rows, "rms", "tsa")["value"].is_empty());
+    let svg = std::fs::read_to_string(scratch.path().join("out/rec/signal.svg")).unwrap();
+    assert!(!svg.contains("NaN"));
+}
+
+/// Recording, flags in groups, and what the message must name.
+type Case<'a> = (&'a str, &'a [&'a [&'a str]], &'a [&'a str]);
+
+#[test]
+fn bad_input_is_one_message_with_a_remedy() {
+    let scratch = Scratch::new();
+    let [x, tacho] = scratch.record("rec.csv", 10_000, Holds::default(), 7);
+    scratch.write("short.csv", &csv_text("case,tacho", &[&x[..300], &tacho[..300]]));
+    scratch.write("flat.csv", &csv_text("case,tacho", &[&x, &vec![0.0; x.len()]]));
+    scratch.write("nan.csv", &csv_text("case,tacho", &[&vec![f64::NAN; x.len()], &tacho]));
+    scratch.write("broken.csv", "case,tacho\n1,0\n2,0\nbad,0\n");
+    scratch.write("rec.xyz", "1,2");
+    std::fs::create_dir(scratch.path().join("empty")).unwrap();
+    let before = scratch.names();
+    let gear = ["--teeth", "27"];
+    let rate = ["--rate-hz", "5120"];
+    let cases: [Case<'_>; 18] = [
+        ("nowhere.csv", &[&gear, &rate, &["--tach", "2"]], &["nowhere.csv", "no such file", "--signal"]),
+        ("rec.csv", &[&gear, &["--tach", "2"]], &["sampling rate", "--rate-hz", "signal.rate_hz"]),
+        ("rec.csv", &[&gear, &rate, &["--tach", "taco"]], &["\"taco\"", "\"case\"", "\"tacho\""]),
+        ("rec.csv", &[&gear, &rate, &["--tach", "2", "--channel", "3"]], &["\"3\"", "\"case\""]),
+        ("rec.csv", &[&gear, &rate], &["--tach", "--speed-hz"]),
+        ("rec.csv", &[&rate, &["--tach", "2"]], &["--teeth", "required"]),
+        ("rec.csv", &[&["--teeth", "0", "--rate-hz", "0", "--tach", "2"]], &["--teeth = 0", "--rate-hz = 0"]),
+        ("rec.csv", &[&gear, &rate, &["--tach", "times.csv"]], &["times.csv", "--tach"]),
+        ("rec.csv", &[&gear, &rate, &["--tach", "2", "--speed-hz", "3"]], &["--speed-hz", "--tach"]),
+        ("rec.csv", &[&gear, &rate, &["--speed-hz", "100"]], &["2700.0 mesh cycles", "5120"]),
+        ("rec.csv", &[&gear, &rate, &["--tach", "2", "--gear-ratio", "a"]], &["--gear-ratio", "27/81"]),
+        ("rec.csv", &[&gear, &rate, &["--tach", "2", "--healthy-first", "3"]], &["folder", "--healthy-first"]),
+        ("rec.csv", &[&gear, &rate, &["--tach", "2", "--healthy", "empty"]], &["empty", "no recordings", ".wav"]),
+        ("short.csv", &[&gear, &rate, &["--speed-hz", "10"]], &["short.csv", "0.0586 s", "0.1000 s", "record longer"]),
+        ("flat.csv", &[&gear, &rate, &["--tach", "tacho"]], &["flat.csv", "\"tacho\"", "no pulses"]),
+        ("nan.csv", &[&gear, &rate, &["--tach", "tacho"]], &["nan.csv", "gap"]),
+        ("broken.csv", &[&gear, &rate, &["--speed-hz", "10"]], &["broken.csv", "line 4", "bad"]),
+        ("rec.xyz", &[&gear, &rate, &["--speed-hz", "10"]], &["rec.xyz", "csv", "wav"]),
+    ];
+    for (file, flags, wanted) in cases {
+        let arguments = [&["hums", "--signal", file][..], &flags.concat()].concat();
+        let output = gearwright(scratch.path(), &arguments);
+        let message = text(&output.stderr);
+        assert!(!output.status.success(), "{arguments:?} was accepted");
+        for word in wanted {
+            assert!(message.contains(word), "{arguments:?}: \"{word}\" is missing in: {message}");
+        }
+        assert!(!message.contains("panicked"), "{message}");
+        assert_eq!(scratch.names(), before, "{arguments:?} left something behind");
+    }
+    // All faults of a case file at once, with their lines.
+    let case =
+        "kind = \"recording\"\n[signal]\nfile = \"rec.csv\"\nrate = 3\n[gear]\nteeth = 0\n[tachometer]\nspeed = 1\n";
+    scratch.write("case.toml", case);
+    let message = text(&gearwright(scratch.path(), &["hums", "case.toml"]).stderr);
+    for word in ["case.toml:4", "signal.rate", "rate_hz", "case.toml:6", "gear.teeth", "case.toml:8", "speed_hz"] {
+        assert!(message.contains(word), "{word} is missing in: {message}");
+    }
+    // A case of another kind.
+    scratch.write("pair.toml", "kind = \"spur-pair\"\n");
+    assert!(!gearwright(scratch.path(), &["hums", "pair.toml"]).status.success());
+}
+
+/// An interrupt while a long recording is read leaves nothing behind.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_leaves_nothing() {
+    let scratch = Scratch::new();
+    // 40 million samples of silence with pulses: far longer than the test waits.
+    let spec = hound::WavSpec {
+        channels: 1,
+        sample_rate: 50_000,
+        bits_per_sample: 16,
+        sample_format: hound::SampleFormat::Int,
+    };
+    let mut wav = hound::WavWriter::create(scratch.path().join("long.wav"), spec).unwrap();
+    for i in 0..40_000_000_u32 {
+        wav.write_sample((i % 5000) as i16).unwrap();
+    }
+    wav.finalize().unwrap();
+    let mut run = Command::new(env!("CARGO_BIN_EXE_gearwright"))
+        .args(["hums", "--signal", "long.wav", "--teeth", "27", "--speed-hz", "10"])
+        .current_dir(scratch.path())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    // The first line tells that reading has begun.
+    let mut told = String::new();
+    let mut errors = BufReader::new(run.stderr.take().unwrap());
+    errors.read_line(&mut told).unwrap();
+    assert!(told.contains("reading"), "{told}");
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    assert!(run.try_wait().unwrap().is_none(), "the run is too short for this test");
+    assert!(Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap().success());
+    errors.read_to_string(&mut told).unwrap();
+    assert!(!run.wait().unwrap().success() && told.contains("stopped"), "{told}");
+    assert_eq!(scratch.names(), ["long.wav"]);
+}
+
+/// Every command of the how-to, in its order, on recordings of the names it uses.
+#[test]
+fn the_how_to_works() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/own-recording.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let scratch = Scratch::new();
+    let holds = Holds { noise: 0.1, ..Holds::default() };
+    let [x, tacho] = scratch.record("rec.csv", 20_480, holds, 1);
+    for k in 0..6 {
+        scratch.record(&format!("recordings/{k}.csv"), 10_240, holds, k);
+        scratch.record(&format!("healthy/{k}.csv"), 10_240, holds, 10 + k);
+    }
+    scratch.write("pulses.txt", &(0..40).map(|k| format!("{}\n", f64::from(k) / SPEED)).collect::<String>());
+    let spec =
+        hound::WavSpec { channels: 2, sample_rate: 5120, bits_per_sample: 24, sample_format: hound::SampleFormat::Int };
+    let mut wav = hound::WavWriter::create(scratch.path().join("rec.wav"), spec).unwrap();
+    for sample in x.iter().zip(&tacho).flat_map(|(x, t)| [x / 4.0, *t / 2.0]) {
+        wav.write_sample((sample * 8e6) as i32).unwrap();
+    }
+    wav.finalize().unwrap();
+    let mut count = 0;
+    for command in page.lines().filter_map(|line| line.strip_prefix("gearwright ")) {
+        succeed(scratch.path(), &command.split_whitespace().collect::<Vec<_>>());
+        count += 1;
+    }
+    assert!(count >= 12, "{count} commands");
+    for name in
+        ["rec/indicators.csv", "recordings/trend.csv", "recordings/alarms.csv", "recordings/trend_fm4_difference.svg"]
+    {
+        assert!(scratch.path().join("out").join(name).exists(), "{name}");
+    }
+}
+
+#[test]
+fn a_time_column_gives_the_rate_and_is_not_judged() {
+    let scratch = Scratch::new();
+    let [x, tacho] = recording(10_240, Holds { noise: 0.1, ..Holds::default() }, 8);
+    let time: Vec<f64> = (0..x.len()).map(|i| i as f64 / RATE).collect();
+    scratch.write("rec.csv", &csv_text("Time (s),x,x,tacho", &[&time, &x, &x, &tacho]));
+    let arguments = ["hums", "--signal", "rec.csv", "--teeth", "27", "--tach", "tacho", "--no-plots"];
+    let screen = succeed(scratch.path(), &arguments);
+    assert!(screen.contains("at 5120 Hz"), "{screen}");
+    let rows = table(&scratch.path().join("out/rec/indicators.csv"));
+    let channels: std::collections::BTreeSet<&str> = rows.iter().map(|r| r["channel"].as_str()).collect();
+    assert_eq!(channels.into_iter().collect::<Vec<_>>(), ["x", "x (3)"], "equal names are told apart");
+    let holed: Vec<f64> = time.iter().map(|t| if *t > 1.0 { t + 0.5 } else { *t }).collect();
+    scratch.write("holed.csv", &csv_text("t,x,tacho", &[&holed, &x, &tacho]));
+    let output = gearwright(scratch.path(), &["hums", "--signal", "holed.csv", "--teeth", "27", "--tach", "tacho"]);
+    let message = text(&output.stderr);
+    assert!(!output.status.success(), "a hole in the time column is no uniform rate");
+    assert!(message.contains("holed.csv") && message.contains("\"t\"") && message.contains("--rate-hz"), "{message}");
+}
