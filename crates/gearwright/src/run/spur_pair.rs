@@ -128,7 +128,7 @@ fn write_damage(
     let solved = || damaged.iter().filter_map(|d| d.series.results.first().map(|series| (d, series.as_slice())));
     let effects: Vec<damage::Effect> =
         solved().map(|(d, series)| damage::effect(&d.label, healthy, series, origin)).collect();
-    let Some((worst, worst_series)) = solved().last() else { return Ok(effects) };
+    let Some((worst, worst_series)) = solved().next_back() else { return Ok(effects) };
     damage::table(&folder.file("damage.csv"), &effects)?;
     for (index, (_, series)) in solved().enumerate() {
         tables::series(&folder.file(&format!("series_damage_{}.csv", index + 1)), series, origin)?;
