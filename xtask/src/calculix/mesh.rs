@@ -19,6 +19,16 @@ pub struct TriangleMesh {
     pub bore: Vec<usize>,
 }
 
+/// A crack in a tooth: its path from the mouth on the fillet to the tip, in the frame of tooth 0.
+pub struct CrackPath {
+    /// Tooth number.
+    pub tooth: i32,
+    /// Whether it starts on the upper half of the tooth.
+    pub upper: bool,
+    /// Points.
+    pub points: Vec<Point2<f64>>,
+}
+
 /// Where a boundary edge lies.
 #[derive(Clone, Copy)]
 enum Place {
@@ -49,7 +59,54 @@ struct Outline<'a> {
     pitch: f64,
 }
 
+/// A polyline with points about as far apart as wanted where they are, ends kept.
+fn resampled(points: &[Point2<f64>], size: &impl Fn(Point2<f64>) -> f64) -> Vec<Point2<f64>> {
+    let mut measure = vec![0.0];
+    for pair in points.windows(2) {
+        let last = measure[measure.len() - 1];
+        measure.push(last + (pair[1] - pair[0]).norm() / size(nalgebra::center(&pair[0], &pair[1])));
+    }
+    let total = measure[points.len() - 1];
+    let count = total.ceil().max(2.0) as usize;
+    (0..=count)
+        .map(|k| {
+            let wanted = total * k as f64 / count as f64;
+            let next = measure.partition_point(|&m| m < wanted).clamp(1, points.len() - 1);
+            let share = (wanted - measure[next - 1]) / (measure[next] - measure[next - 1]);
+            points[next - 1] + (points[next] - points[next - 1]) * share.clamp(0.0, 1.0)
+        })
+        .collect()
+}
+
+/// Side of the nearest segment of a polyline on which a point lies.
+fn is_left_of(line: &[Point2<f64>], point: Point2<f64>) -> bool {
+    let nearest = line.windows(2).map(|pair| {
+        let (along, to) = (pair[1] - pair[0], point - pair[0]);
+        let t = (along.dot(&to) / along.norm_squared()).clamp(0.0, 1.0);
+        ((to - along * t).norm(), along.x * to.y - along.y * to.x)
+    });
+    nearest.min_by(|a, b| a.0.total_cmp(&b.0)).is_some_and(|(_, cross)| cross > 0.0)
+}
+
 impl Outline<'_> {
+    /// Parameter of the fillet nearest to a point of either half, in the frame of tooth 0.
+    fn fillet_parameter(&self, point: Point2<f64>) -> f64 {
+        let point = Point2::new(point.x, point.y.abs());
+        let distance = |u: f64| (self.half.point(OutlineSegment::Fillet, u) - point).norm();
+        let mut best =
+            (0..=400).map(|k| f64::from(k) / 400.0).min_by(|a, b| distance(*a).total_cmp(&distance(*b))).unwrap_or(0.5);
+        let mut reach = 1.0 / 400.0;
+        for _ in 0..40 {
+            reach *= 0.5;
+            for u in [best - reach, best + reach] {
+                if distance(u) < distance(best) {
+                    best = u;
+                }
+            }
+        }
+        best
+    }
+
     fn point(&self, place: Place, t: f64) -> Point2<f64> {
         let mix = |ends: [f64; 2]| ends[0] + t * (ends[1] - ends[0]);
         match place {
@@ -118,6 +175,7 @@ pub fn whole_gear(
     pairs: &[i32],
     mesh_cycle: f64,
     finest: f64,
+    crack: Option<&CrackPath>,
 ) -> anyhow::Result<TriangleMesh> {
     let gear = pair.gear(member);
     let outline =
@@ -126,18 +184,22 @@ pub fn whole_gear(
     let step = pair.tooth_step(member);
     let tip = gear.roll_distance(gear.tip_form_radius());
     let form = gear.roll_distance(gear.form_radius());
-    let contacts: Vec<Point2<f64>> = pairs
+    let turned = |tooth: i32, point: Point2<f64>| Rotation2::new(outline.pitch * f64::from(tooth)) * point;
+    let mut focuses: Vec<Point2<f64>> = pairs
         .iter()
         .map(|&k| {
             let roll = pair.contact_roll(member, k, mesh_cycle).clamp(form, tip);
             Rotation2::new(outline.pitch * f64::from(k * step)) * gear.flank_point(pair.working_side(member), roll)
         })
         .collect();
+    if let Some(crack) = crack {
+        focuses.extend(crack.points.last().map(|tip| turned(crack.tooth, *tip)));
+    }
     // teeth from -z/2 on, so that the numbers of pairs are tooth numbers
     let teeth = gear.teeth() as i32;
     let first = -teeth / 2;
     let size = |point: Point2<f64>| {
-        let distance = contacts.iter().map(|c| (c - point).norm()).fold(f64::INFINITY, f64::min);
+        let distance = focuses.iter().map(|c| (c - point).norm()).fold(f64::INFINITY, f64::min);
         // uniform over three sizes around the contact, growing beyond
         (finest + GROWTH * (distance - 6.0 * finest).max(0.0)).min(COARSEST * gear.module())
     };
@@ -153,13 +215,28 @@ pub fn whole_gear(
                     OutlineSegment::TipRound => gear.tip_round(),
                     _ => f64::INFINITY,
                 };
-                boundary.extend(outline.split(Place::Tooth { tooth, upper, segment, ends }, &|p| size(p).min(most)));
+                // the mouth of a crack is a point of the outline
+                let mouth = crack.filter(|crack| {
+                    let own = crack.tooth.rem_euclid(teeth) == tooth.rem_euclid(teeth);
+                    own && crack.upper == upper && segment == OutlineSegment::Fillet
+                });
+                let pieces = match mouth.map(|crack| outline.fillet_parameter(crack.points[0])) {
+                    Some(u) => vec![[ends[0], u], [u, ends[1]]],
+                    None => vec![ends],
+                };
+                for ends in pieces {
+                    let piece = Place::Tooth { tooth, upper, segment, ends };
+                    boundary.extend(outline.split(piece, &|p| size(p).min(most)));
+                }
             }
         }
     }
     let bore_start = boundary.len();
     boundary.extend(outline.split(Place::Bore { angles: [0.0, std::f64::consts::TAU] }, &size));
-    triangulate(&outline, &boundary, bore_start, |place| match place {
+    let slit = crack.map(|crack| resampled(&crack.points, &|p| size(turned(crack.tooth, p))));
+    let slit: Vec<Point2<f64>> =
+        slit.into_iter().flatten().map(|p| turned(crack.map_or(0, |crack| crack.tooth), p)).collect();
+    triangulate(&outline, &boundary, bore_start, &slit, |place| match place {
         Place::Tooth { tooth, upper, segment, .. } => {
             upper == upper_works
                 && matches!(segment, OutlineSegment::Flank | OutlineSegment::TipRound)
@@ -181,6 +258,7 @@ fn triangulate(
     outline: &Outline<'_>,
     boundary: &[Place],
     bore_start: usize,
+    slit: &[Point2<f64>],
     touches: impl Fn(Place) -> bool,
 ) -> anyhow::Result<TriangleMesh> {
     let mut triangulation = ConstrainedDelaunayTriangulation::<spade::Point2<f64>>::new();
@@ -202,6 +280,20 @@ fn triangulate(
         triangulation.add_constraint(handles[k], handles[next(k)]);
         place_of.insert((handles[k].index(), handles[next(k)].index()), boundary[k]);
     }
+    // the first point of a slit is a point of the outline
+    let mut slit_handles = Vec::new();
+    for (k, point) in slit.iter().enumerate() {
+        let on_outline =
+            || (0..bore_start).min_by(|&a, &b| (starts[a] - point).norm().total_cmp(&(starts[b] - point).norm()));
+        slit_handles.push(match on_outline().filter(|_| k == 0) {
+            Some(nearest) => handles[nearest],
+            None => triangulation.insert(spade::Point2::new(point.x, point.y)).context("crack point")?,
+        });
+    }
+    for pair in slit_handles.windows(2) {
+        ensure!(triangulation.can_add_constraint(pair[0], pair[1]), "the crack crosses the outline");
+        triangulation.add_constraint(pair[0], pair[1]);
+    }
     let parameters = RefinementParameters::<f64>::new()
         .exclude_outer_faces(true)
         .keep_constraint_edges()
@@ -215,13 +307,26 @@ fn triangulate(
         contact_faces: Vec::new(),
         bore: Vec::new(),
     };
+    // every point of the slit but its tip is doubled for the triangles on its left
+    let mut doubles: HashMap<usize, usize> = HashMap::new();
+    for handle in slit_handles.iter().rev().skip(1) {
+        doubles.insert(handle.index(), mesh.nodes.len());
+        mesh.nodes.push(mesh.nodes[handle.index()]);
+    }
     let mut middles: HashMap<(usize, usize), usize> = HashMap::new();
     for face in triangulation.inner_faces().filter(|face| !excluded.contains(&face.fix())) {
         let corners = face.vertices().map(|v| v.fix().index());
-        let mut element = [corners[0], corners[1], corners[2], 0, 0, 0];
+        let middle = Point2::from(corners.iter().map(|&c| mesh.nodes[c].coords).sum::<nalgebra::Vector2<f64>>() / 3.0);
+        let double = |corner: usize| {
+            let doubled = doubles.get(&corner).filter(|_| is_left_of(slit, middle));
+            doubled.copied().unwrap_or(corner)
+        };
+        let own = corners.map(double);
+        let mut element = [own[0], own[1], own[2], 0, 0, 0];
         for edge in 0..3 {
-            let (a, b) = (corners[edge], corners[(edge + 1) % 3]);
-            let place = place_of.get(&(a, b)).or_else(|| place_of.get(&(b, a))).copied();
+            let place_at = |a: usize, b: usize| place_of.get(&(a, b)).or_else(|| place_of.get(&(b, a))).copied();
+            let place = place_at(corners[edge], corners[(edge + 1) % 3]);
+            let (a, b) = (own[edge], own[(edge + 1) % 3]);
             let middle = *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
                 let straight = nalgebra::center(&mesh.nodes[a], &mesh.nodes[b]);
                 let most = MOST_BULGE * (mesh.nodes[b] - mesh.nodes[a]).norm();

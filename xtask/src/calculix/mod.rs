@@ -13,13 +13,17 @@ use std::time::{Duration, Instant};
 
 use anyhow::Context;
 use fecm::FaceModel;
+use fecm::mesh::SectorMesh;
 use fecm::statics::{PairModel, PositionResult, StaticsRequest};
-use gear_geom::Member;
+use gear_geom::{Damage, Member, RootCrack, ToothDamage};
 use gearwright::case::{self, SpurPairCase};
 
-/// Cases and mesh cycles (pair 0 at its pitch point at 0).
-const SCENES: [(&str, &[f64]); 2] =
-    [("nonunity-pair.toml", &[0.0, 0.2, 0.4, 0.6]), ("unity-pair.toml", &[0.0, 0.3, 0.5])];
+/// Cases, root crack of the pinion's tooth 0 (fraction of the chord), and mesh cycles (pair 0 at its pitch point at 0).
+const SCENES: [(&str, f64, &[f64]); 3] = [
+    ("nonunity-pair.toml", 0.0, &[0.0, 0.2, 0.4, 0.6]),
+    ("unity-pair.toml", 0.0, &[0.0, 0.3, 0.5]),
+    ("nonunity-pair.toml", 0.5, &[0.0, 0.25]),
+];
 
 /// Sizes of contact elements in Hertz half widths: the last is compared, the others show convergence.
 const LADDER: [f64; 3] = [1.0, 0.5, 0.25];
@@ -47,13 +51,13 @@ pub fn run() -> anyhow::Result<()> {
          |---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     let mut worst = 0.0_f64;
-    for (name, mesh_cycles) in SCENES {
+    for (name, fraction, mesh_cycles) in SCENES {
         let case = case::load_spur_pair(&root.join("configs").join(name))?;
         for &mesh_cycle in mesh_cycles {
-            let (ours, position) = gearwright_answer(&case, mesh_cycle)?;
+            let (ours, position) = gearwright_answer(&case, fraction, mesh_cycle)?;
             let peers = LADDER
                 .iter()
-                .map(|&size| calculix_answer(&case, &position, size))
+                .map(|&size| calculix_answer(&case, fraction, &position, size))
                 .collect::<anyhow::Result<Vec<_>>>()
                 .with_context(|| format!("{name} at mesh cycle {mesh_cycle}"))?;
             let finest = peers[LADDER.len() - 1];
@@ -61,8 +65,9 @@ pub fn run() -> anyhow::Result<()> {
             worst = worst.max(difference.abs());
             writeln!(
                 report,
-                "| {} | {mesh_cycle} | {:.3} | {:.3} | {:.3} | {} | {:.1} | {:.3} | {} | {:.2} | {:+.2} % |",
+                "| {}{} | {mesh_cycle} | {:.3} | {:.3} | {:.3} | {} | {:.1} | {:.3} | {} | {:.2} | {:+.2} % |",
                 name.trim_end_matches(".toml"),
+                if fraction > 0.0 { format!(", {:.0} % crack", 100.0 * fraction) } else { String::new() },
                 peers[0].transmission_error * 1e6,
                 peers[1].transmission_error * 1e6,
                 finest.transmission_error * 1e6,
@@ -84,9 +89,15 @@ pub fn run() -> anyhow::Result<()> {
     Ok(())
 }
 
-fn gearwright_answer(case: &SpurPairCase, mesh_cycle: f64) -> anyhow::Result<(Answer, PositionResult)> {
+/// Crack along the chord, on the flank that carries load.
+fn crack(case: &SpurPairCase, fraction: f64) -> RootCrack {
+    RootCrack::along_chord(case.pair.working_side(Member::Pinion), fraction)
+}
+
+fn gearwright_answer(case: &SpurPairCase, fraction: f64, mesh_cycle: f64) -> anyhow::Result<(Answer, PositionResult)> {
     let started = Instant::now();
-    let options = fecm::statics::PairModelOptions { face: FaceModel::PlaneStrain, ..case.options.clone() };
+    let damage = [vec![ToothDamage { tooth: 0, damage: Damage::Crack(crack(case, fraction)) }], vec![]];
+    let options = fecm::statics::PairModelOptions { face: FaceModel::PlaneStrain, damage, ..case.options.clone() };
     let model = PairModel::new(&case.pair, &options)?;
     let torques = vec![case.inputs.load.torque_n_m];
     let request =
@@ -99,7 +110,7 @@ fn gearwright_answer(case: &SpurPairCase, mesh_cycle: f64) -> anyhow::Result<(An
 
 /// The peer's answer with contact elements of `size` Hertz half widths. Our answer only says where to turn the bore: the moment there
 /// is the peer's own.
-fn calculix_answer(case: &SpurPairCase, ours: &PositionResult, size: f64) -> anyhow::Result<Answer> {
+fn calculix_answer(case: &SpurPairCase, fraction: f64, ours: &PositionResult, size: f64) -> anyhow::Result<Answer> {
     let pair = &case.pair;
     let facewidth = pair.pinion().facewidth().min(pair.wheel().facewidth());
     let material = [case.options.pinion.material, case.options.wheel.material];
@@ -107,8 +118,18 @@ fn calculix_answer(case: &SpurPairCase, ours: &PositionResult, size: f64) -> any
     let line_load = ours.mesh_force / facewidth;
     let half_width = fecm::pairing::Pairing::new(pair).hertz_half_width(inverse_modulus, line_load);
     let pairs: Vec<i32> = ours.loaded_pairs().map(|p| p.pair).collect();
-    let meshes = [Member::Pinion, Member::Wheel]
-        .map(|member| mesh::whole_gear(pair, member, &pairs, ours.mesh_cycle, size * half_width));
+    // the path of the crack is the geometry both programs share
+    let path = (fraction > 0.0).then(|| crack_path(case, fraction)).transpose()?;
+    let meshes = [Member::Pinion, Member::Wheel].map(|member| {
+        mesh::whole_gear(
+            pair,
+            member,
+            &pairs,
+            ours.mesh_cycle,
+            size * half_width,
+            path.as_ref().filter(|_| member == Member::Pinion),
+        )
+    });
     let [pinion, wheel] = meshes;
     let meshes = [pinion?, wheel?];
     let base_radius = pair.wheel().base_radius();
@@ -132,4 +153,13 @@ fn calculix_answer(case: &SpurPairCase, ours: &PositionResult, size: f64) -> any
     let rotation = lagrange(0, 1, 2) + lagrange(1, 0, 2) + lagrange(2, 0, 1);
     let unknowns = 2 * meshes.iter().map(|m| m.nodes.len()).sum::<usize>();
     Ok(Answer { transmission_error: rotation * base_radius, unknowns, time })
+}
+
+fn crack_path(case: &SpurPairCase, fraction: f64) -> anyhow::Result<mesh::CrackPath> {
+    let crack = crack(case, fraction);
+    let density = fecm::MeshDensity { order: 4, density: 4.0 };
+    let sector = SectorMesh::with_crack(case.pair.pinion(), &density, Some(&crack), "pinion")?;
+    let faces = sector.crack.context("the sector has no crack")?;
+    let points = faces.nodes[0].iter().map(|&node| sector.mesh.nodes[node as usize]).collect();
+    Ok(mesh::CrackPath { tooth: 0, upper: crack.side.sign() > 0.0, points })
 }
