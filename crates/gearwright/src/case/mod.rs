@@ -1,4 +1,4 @@
-//! Case files: from TOML text to gears, options and requests in SI units.
+//! Case files: from TOML text to gears, curves, options and requests in SI units.
 //!
 //! `text -> document (with lines) -> checked against the schema of its kind -> as written -> resolved (SI)`; every stage tells all its
 //! faults at once. A kind is a folder with its `schema` (keys, units, ranges, defaults) and `resolve`, listed in [`kind::KINDS`].
@@ -7,6 +7,7 @@ pub mod check;
 pub mod document;
 pub mod fault;
 pub mod kind;
+pub mod lumped_pair;
 pub mod recording;
 pub mod reference;
 pub mod spur_pair;
@@ -17,6 +18,8 @@ use std::path::Path;
 use serde::de::DeserializeOwned;
 
 pub use fault::{CaseFaults, Fault};
+use kind::CaseKind;
+pub use lumped_pair::LumpedPairCase;
 pub use recording::RecordingCase;
 pub use spur_pair::SpurPairCase;
 
@@ -26,6 +29,8 @@ pub use spur_pair::SpurPairCase;
 pub enum Case {
     /// Statics of a spur gear pair.
     SpurPair(Box<SpurPairCase>),
+    /// Lumped-parameter dynamics of a gear pair.
+    LumpedPair(Box<LumpedPairCase>),
     /// Condition indicators of recorded vibration.
     Recording(Box<RecordingCase>),
 }
@@ -36,6 +41,7 @@ impl Case {
     pub fn kind(&self) -> &'static str {
         match self {
             Self::SpurPair(_) => spur_pair::KIND.name,
+            Self::LumpedPair(_) => lumped_pair::KIND.name,
             Self::Recording(_) => recording::KIND.name,
         }
     }
@@ -46,16 +52,7 @@ impl Case {
 /// # Errors
 /// All faults of the file.
 pub fn load(file: &Path) -> Result<Case, CaseFaults> {
-    let text = std::fs::read_to_string(file).map_err(|error| {
-        let message = match error.kind() {
-            std::io::ErrorKind::NotFound => {
-                "there is no such file; `gearwright init spur-pair FILE` writes one to start from".to_owned()
-            }
-            _ => format!("cannot be read: {error}"),
-        };
-        CaseFaults::new(file, vec![Fault { line: None, key: String::new(), value: None, message }])
-    })?;
-    from_text(&text, file)
+    from_text(&read(file)?, file)
 }
 
 /// Reads a case file that must be a spur pair.
@@ -63,9 +60,9 @@ pub fn load(file: &Path) -> Result<Case, CaseFaults> {
 /// # Errors
 /// All faults of the file, or its kind.
 pub fn load_spur_pair(file: &Path) -> Result<SpurPairCase, CaseFaults> {
-    match load(file)? {
+    match resolved(&read(file)?, file, Some(&spur_pair::KIND))? {
         Case::SpurPair(case) => Ok(*case),
-        other => Err(wrong_kind(file, &other, "spur-pair")),
+        other => Err(wrong_kind(file, other.kind(), spur_pair::KIND.name)),
     }
 }
 
@@ -74,16 +71,28 @@ pub fn load_spur_pair(file: &Path) -> Result<SpurPairCase, CaseFaults> {
 /// # Errors
 /// All faults of the file, or its kind.
 pub fn load_recording(file: &Path) -> Result<RecordingCase, CaseFaults> {
-    match load(file)? {
+    match resolved(&read(file)?, file, Some(&recording::KIND))? {
         Case::Recording(case) => Ok(*case),
-        other => Err(wrong_kind(file, &other, "recording")),
+        other => Err(wrong_kind(file, other.kind(), recording::KIND.name)),
     }
 }
 
-fn wrong_kind(file: &Path, case: &Case, wanted: &str) -> CaseFaults {
+fn wrong_kind(file: &Path, found: &str, wanted: &str) -> CaseFaults {
     let message = format!("must be \"{wanted}\" here; `gearwright run` takes every kind");
-    let value = Some(format!("\"{}\"", case.kind()));
+    let value = Some(format!("\"{found}\""));
     CaseFaults::new(file, vec![Fault { line: None, key: "kind".into(), value, message }])
+}
+
+fn read(file: &Path) -> Result<String, CaseFaults> {
+    std::fs::read_to_string(file).map_err(|error| {
+        let message = match error.kind() {
+            std::io::ErrorKind::NotFound => {
+                "there is no such file; `gearwright init spur-pair FILE` writes one to start from".to_owned()
+            }
+            _ => format!("cannot be read: {error}"),
+        };
+        CaseFaults::new(file, vec![Fault { line: None, key: String::new(), value: None, message }])
+    })
 }
 
 /// Checks and resolves the text of a case file; `file` names it in faults, and files it refers to are looked for beside it.
@@ -91,9 +100,18 @@ fn wrong_kind(file: &Path, case: &Case, wanted: &str) -> CaseFaults {
 /// # Errors
 /// All faults of the text.
 pub fn from_text(text: &str, file: &Path) -> Result<Case, CaseFaults> {
+    resolved(text, file, None)
+}
+
+/// As [`from_text`]; a file of another kind than the one wanted is refused before it is resolved, so that files cannot refer to
+/// each other in circles.
+fn resolved(text: &str, file: &Path, wanted: Option<&CaseKind>) -> Result<Case, CaseFaults> {
     let one = |fault| CaseFaults::new(file, vec![fault]);
     let document = document::parse(text).map_err(one)?;
     let kind = check::kind(&document).map_err(one)?;
+    if let Some(wanted) = wanted.filter(|wanted| wanted.name != kind.name) {
+        return Err(wrong_kind(file, kind.name, wanted.name));
+    }
     let faults = check::faults(&document, kind);
     if !faults.is_empty() {
         return Err(CaseFaults::new(file, faults));

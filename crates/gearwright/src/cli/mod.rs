@@ -12,7 +12,7 @@ use crate::run;
 mod hums;
 mod progress;
 
-/// Spur gear contact from a TOML case file.
+/// Spur gear contact and dynamics from a TOML case file.
 #[derive(Debug, Parser)]
 #[command(name = "gearwright", version, about, max_term_width = 100)]
 pub struct Cli {
@@ -42,7 +42,7 @@ enum Command {
     },
     /// Write a commented case file to start from.
     Init {
-        /// Kind of case: spur-pair, recording.
+        /// Kind of case: spur-pair, lumped-pair, recording.
         kind: String,
         /// File to write; default: <kind>.toml.
         file: Option<PathBuf>,
@@ -127,6 +127,10 @@ fn about(case: &Case) -> String {
             let mesh = case.rule.mesh_orders.first().copied().unwrap_or_default();
             let there = if case.signal.exists() { "" } else { " (not there yet)" };
             format!("{}{there}: {mesh} mesh cycles in a period of {} turns\n", case.signal.display(), case.period_turns)
+        }
+        Case::LumpedPair(case) => {
+            let (mass, force) = (case.pair.effective_mass(), case.pair.mean_force());
+            format!("moving mass {mass:.4} kg, mean mesh force {force:.1} N, {} damaged states\n", case.damaged.len())
         }
     }
 }

@@ -3,6 +3,8 @@
 pub mod damage;
 pub mod folder;
 pub mod geometry;
+pub mod lumped_summary;
+pub mod lumped_tables;
 pub mod recording;
 pub mod recording_summary;
 pub mod summary;

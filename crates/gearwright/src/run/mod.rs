@@ -1,5 +1,6 @@
 //! Running a case: compute, write everything, publish the folder.
 
+pub mod lumped_pair;
 pub mod recording;
 pub mod spur_pair;
 
@@ -35,6 +36,7 @@ pub struct Finished {
 pub fn run(case: &Case, target: &Path, observer: &dyn RunObserver) -> anyhow::Result<Finished> {
     match case {
         Case::SpurPair(case) => spur_pair::run(case, target, observer),
+        Case::LumpedPair(case) => lumped_pair::run(case, target, observer),
         Case::Recording(case) => recording::run(case, target, observer),
     }
 }
