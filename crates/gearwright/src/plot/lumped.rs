@@ -1,7 +1,5 @@
 //! Figures of lumped-parameter dynamics.
 
-use std::collections::BTreeMap;
-
 use lpm::{Measure, Stability};
 
 use super::{COLOURS, Chart, Line, Pattern};
@@ -13,6 +11,8 @@ use crate::run::lumped_pair::states::State;
 const CYCLE: &str = "Mesh cycle";
 /// Spectra are drawn up to this multiple of the mesh frequency.
 const ORDERS: f64 = 6.0;
+/// A difference is shown where it exceeds this part of its largest value.
+const SEEN: f64 = 0.02;
 /// Points per mesh cycle of the excitation's figures.
 const CURVE_POINTS: usize = 200;
 const PATTERNS: [Pattern; 4] = [Pattern::Solid, Pattern::Dashed, Pattern::DashDotted, Pattern::Dotted];
@@ -108,20 +108,17 @@ pub fn bearing_forces(title: &str, all: &[TimeResponse]) -> Chart {
     result
 }
 
-/// Force on single tooth pairs: each pair a line, over the cycles that damage changes or the first two.
+/// Force on three successive tooth pairs: those about the largest force of all, in every state the same.
 #[must_use]
 pub fn tooth_forces(title: &str, all: &[TimeResponse]) -> Chart {
+    let loads = all.iter().flat_map(|one| &one.tooth_forces);
+    let middle = loads.max_by(|a, b| a.2.total_cmp(&b.2)).map_or(0, |most| most.1);
     let mut lines = Vec::new();
     for (index, one) in all.iter().enumerate() {
-        let mut pairs: BTreeMap<i32, Vec<(f64, f64)>> = BTreeMap::new();
-        for &(sample, pair, force) in &one.tooth_forces {
-            pairs.entry(pair).or_default().push((one.response.mesh_cycle[sample], force * 1e-3));
-        }
-        // the engagement with the largest force tells most
-        let largest = |points: &[(f64, f64)]| points.iter().map(|p| p.1).fold(0.0, f64::max);
-        let most = pairs.iter().max_by(|a, b| largest(a.1).total_cmp(&largest(b.1))).map_or(0, |p| *p.0);
-        for (offset, pair) in (most - 1..=most + 1).enumerate() {
-            if let Some(points) = pairs.remove(&pair) {
+        for (offset, pair) in (middle - 1..=middle + 1).enumerate() {
+            let own = one.tooth_forces.iter().filter(|f| f.1 == pair);
+            let points: Vec<(f64, f64)> = own.map(|f| (one.response.mesh_cycle[f.0], f.2 * 1e-3)).collect();
+            if !points.is_empty() {
                 lines.push(line(&format!("{}, pair {pair}", one.state), index, pattern(offset), points));
             }
         }
@@ -215,13 +212,22 @@ pub fn impulse(title: &str, all: &[ImpulseResult]) -> Chart {
     chart(title, "Time (ms)", "Dynamic transmission error (µm)", lines.collect())
 }
 
-/// Damaged minus healthy over time, with the static difference.
+/// Damaged minus healthy over the mesh cycles in which it is seen, with the static difference.
 #[must_use]
 pub fn damage_response(title: &str, all: &[DamageResult]) -> Chart {
+    let seen = all.iter().flat_map(|one| {
+        let (cycles, values) = (&one.response.damaged.response.mesh_cycle, &one.response.difference);
+        let largest = values.iter().fold(0.0_f64, |most, v| v.abs().max(most));
+        cycles.iter().zip(values).filter(move |(_, v)| v.abs() > SEEN * largest).map(|(t, _)| *t)
+    });
+    let (from, to) = seen.fold((f64::INFINITY, 0.0_f64), |(from, to), t| (from.min(t), to.max(t)));
     let mut lines = Vec::new();
     for (index, one) in all.iter().enumerate() {
         let cycles = &one.response.damaged.response.mesh_cycle;
-        let points = |values: &[f64]| cycles.iter().zip(values).map(|(t, x)| (*t, x * 1e6)).collect();
+        let points = |values: &[f64]| {
+            let all = cycles.iter().zip(values).filter(|(t, _)| (from - 1.0..=to + 1.0).contains(*t));
+            all.map(|(t, x)| (*t, x * 1e6)).collect()
+        };
         let name = format!("{}, {} Hz", one.state, rounded(one.mesh_frequency));
         lines.push(line(&name, index, pattern(index), points(&one.response.difference)));
         if !all[..index].iter().any(|a| a.state == one.state) {
