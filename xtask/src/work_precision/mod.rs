@@ -1,5 +1,6 @@
 //! Error against run time of the numerics on offer, with the defaults marked.
 
+mod dynamics_lumped;
 mod report;
 mod statics;
 
@@ -8,11 +9,14 @@ mod statics;
 pub enum Study {
     /// Transmission error and mesh stiffness of the static contact.
     Statics,
+    /// Integration methods of the lumped-parameter dynamics.
+    DynamicsLumped,
 }
 
 /// Runs a study and writes its report.
 pub fn run(study: Study) -> anyhow::Result<()> {
     match study {
         Study::Statics => statics::run(),
+        Study::DynamicsLumped => dynamics_lumped::run(),
     }
 }

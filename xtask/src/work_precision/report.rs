@@ -36,7 +36,8 @@ pub struct Report {
     pub entries: Vec<Entry>,
 }
 
-fn reports(file: &str) -> PathBuf {
+/// Place of a file among the reports.
+pub fn reports(file: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../docs/reports").join(file)
 }
 

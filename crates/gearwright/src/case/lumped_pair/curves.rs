@@ -82,6 +82,16 @@ impl Points {
         Ok(points)
     }
 
+    /// Drops what lies beyond the first mesh cycle.
+    pub fn keep_one_cycle(&mut self) {
+        let Some(first) = self.mesh_cycle.first().copied() else { return };
+        let count = self.mesh_cycle.partition_point(|x| *x < first + 1.0 - 1e-6);
+        for column in [&mut self.mesh_cycle, &mut self.stiffness, &mut self.error] {
+            column.truncate(count);
+        }
+        self.shares.values_mut().for_each(|shares| shares.truncate(count));
+    }
+
     /// Whole mesh cycles covered; the last point may repeat the first.
     fn cycles(&self) -> Result<usize, String> {
         let x = &self.mesh_cycle;

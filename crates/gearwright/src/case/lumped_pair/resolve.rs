@@ -96,7 +96,8 @@ pub fn resolve(mut inputs: LumpedPair, document: &Node, folder: &Path) -> Result
         Member::Gear => &inputs.pair.gear,
     };
     let rotation = member.teeth.map(|teeth| teeth as usize);
-    let mut resolver = Resolver { document, folder, interpolation, faults };
+    let origin = statics.as_ref().map(|s| s.inputs.analysis.mesh_cycle_origin);
+    let mut resolver = Resolver { origin, document, folder, interpolation, faults };
     let healthy = resolver.healthy(&inputs, statics, pair.mean_force());
     let damaged = resolver.damaged(&inputs, rotation);
     resolver.analyses(&inputs);
@@ -112,6 +113,20 @@ pub fn resolve(mut inputs: LumpedPair, document: &Node, folder: &Path) -> Result
 /// A spur-pair case file, its faults in one message.
 fn spur_pair(file: &Path) -> Result<Box<SpurPairCase>, String> {
     case::load_spur_pair(file).map(Box::new).map_err(|faults| format!("its file has faults:\n{faults}"))
+}
+
+/// Refuses a damaged case whose phases are not those of the healthy one.
+fn same_origin(statics: Box<SpurPairCase>, healthy: Option<f64>) -> Result<Box<SpurPairCase>, String> {
+    let own = statics.inputs.analysis.mesh_cycle_origin;
+    let apart = healthy.map_or(0.0, |healthy| own - healthy);
+    if (apart - apart.round()).abs() < 1e-6 {
+        Ok(statics)
+    } else {
+        Err(format!(
+            "its mesh_cycle_origin is {own}, that of excitation.spur_pair {}: they must differ by whole mesh cycles",
+            own - apart
+        ))
+    }
 }
 
 /// Discs and torque that were left out, from the geometry.
@@ -211,6 +226,8 @@ struct Resolver<'a> {
     document: &'a Node,
     folder: &'a Path,
     interpolation: Interpolation,
+    /// Origin of the mesh cycles of the healthy static analysis.
+    origin: Option<f64>,
     faults: Vec<Fault>,
 }
 
@@ -288,8 +305,10 @@ impl Resolver<'_> {
                 let message = format!("must end within the rotation of {rotation} mesh cycles");
                 self.fault(&key("mesh_cycle"), message);
             }
+            let healthy = self.origin;
             let source = match (&state.spur_pair, &state.table, state.stiffness_factor) {
                 (Some(file), None, None) => spur_pair(&self.folder.join(file))
+                    .and_then(|statics| same_origin(statics, healthy))
                     .map_err(|message| self.fault(&key("spur_pair"), message))
                     .ok()
                     .map(Source::SpurPair),

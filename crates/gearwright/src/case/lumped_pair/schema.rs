@@ -150,7 +150,8 @@ pub struct Disc {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Excitation {
-    /// Spur-pair case file, beside this file: its static analysis is run and its curves are used. It must cover whole mesh cycles.
+    /// Spur-pair case file, beside this file: its static analysis is run, without its damage, and its curves are used. It must cover whole
+    /// mesh cycles; where all teeth are alike one of them is used.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spur_pair: Option<String>,
     /// Between the points of a spur-pair run or a table: "linear" (keeps the sharp changes of contact as they are) or "spline" (smooth
@@ -283,7 +284,7 @@ pub struct Fourier {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct State {
-    /// Name in tables and plots.
+    /// Name in tables and plots. Where the spur-pair case holds several severities, each is a state of its own, named as there.
     pub name: String,
     /// First mesh cycle of the rotation that the damage changes. Default: the first mesh cycle of the table or of the spur-pair
     /// case, within the rotation. Required with `stiffness_factor`.
@@ -298,7 +299,8 @@ pub struct State {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.001, max = 1000.0))]
     pub stiffness_factor: Option<f64>,
-    /// Spur-pair case file with the damage, over the whole mesh cycles that it changes.
+    /// Spur-pair case file with the damage, over the whole mesh cycles that it changes. Mesh cycles must be counted from the same
+    /// origin as in `excitation.spur_pair`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spur_pair: Option<String>,
     /// Curves with the damage from a CSV table, over the whole mesh cycles that it changes.
