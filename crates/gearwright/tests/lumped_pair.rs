@@ -506,3 +506,30 @@ fn init_check_and_run_work() {
     let told = text(&gearwright(scratch.path(), &["explain", "state.stiffness_factor"]).stdout);
     assert!(told.contains("stand-in"), "{told}");
 }
+
+#[test]
+fn severities_of_a_spur_pair_case_are_states() {
+    let scratch = Scratch::new();
+    let cracked = SPUR.replace("[analysis]\n", "[analysis]\nmesh_cycle_from = -1.0\nmesh_cycle_to = 1.0\n")
+        + "[[damage]]\non = \"pinion\"\ntooth = 0\ncrack.length_percent = [20.0, 50.0]\n";
+    // the healthy curves come from the same file, whose two cycles are alike
+    scratch.write("spur.toml", &cracked);
+    scratch.write("damaged.toml", &cracked);
+    let (folder, summary) = scratch.run("cracks", &JOINED.replace("EXTRA", ""));
+    let states = summary["states"].as_array().unwrap();
+    let names: Vec<&str> = states.iter().map(|s| s["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["healthy", "crack 20 %", "crack 50 %"]);
+    assert_eq!(states[0]["period_mesh_cycles"], 1);
+    let largest: Vec<f64> = states.iter().map(|s| s["ste_um"]["max"].as_f64().unwrap()).collect();
+    assert!(largest[0] < largest[1] && largest[1] < largest[2], "{largest:?}");
+    let response = table(&folder.join("response.csv"));
+    assert_eq!(response["state"].len(), 3 * 2500);
+
+    let shifted = cracked.replace("[analysis]\n", "[analysis]\nmesh_cycle_origin = 0.75\n");
+    scratch.write("damaged.toml", &shifted);
+    scratch.write("case.toml", &JOINED.replace("EXTRA", ""));
+    let message = text(&gearwright(scratch.path(), &["check", "case.toml"]).stderr);
+    for word in ["state[1].spur_pair", "mesh_cycle_origin", "0.75"] {
+        assert!(message.contains(word), "\"{word}\" is missing in: {message}");
+    }
+}

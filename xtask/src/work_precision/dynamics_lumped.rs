@@ -76,11 +76,7 @@ fn chart(problem: &str, rows: &[&WorkPrecision]) -> Chart {
     let lines = methods.iter().enumerate().map(|(index, method)| Line {
         name: method.clone(),
         // errors at rounding would stretch the axis
-        points: rows
-            .iter()
-            .filter(|r| name(r) == *method)
-            .map(|r| (r.seconds * 1e6, r.error.max(1e-13)))
-            .collect(),
+        points: rows.iter().filter(|r| name(r) == *method).map(|r| (r.seconds * 1e6, r.error.max(1e-13))).collect(),
         pattern: PATTERNS[index % PATTERNS.len()],
         colour: COLOURS[index % COLOURS.len()],
     });

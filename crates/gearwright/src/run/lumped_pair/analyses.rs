@@ -120,34 +120,40 @@ pub fn run(
 ) -> anyhow::Result<Findings> {
     let run = Run { case, states, observer, integration: integration(case) };
     let mut findings = Findings::default();
-    let timed = |stage: &str, slot: &mut f64, work: &mut dyn FnMut() -> anyhow::Result<()>| {
-        observer.stage(stage);
-        let clock = Instant::now();
-        work()?;
-        *slot = clock.elapsed().as_secs_f64();
-        anyhow::Ok(())
-    };
     let analysis = &case.inputs.analysis;
     if analysis.time.is_some() {
-        timed("response over time", &mut times.time, &mut || Ok(findings.time = run.time()?))?;
+        findings.time = timed(observer, "response over time", &mut times.time, || run.time())?;
     }
     if let Some(sweep) = &analysis.sweep {
-        timed("sweeps", &mut times.sweep, &mut || Ok(findings.sweeps = run.sweeps(sweep)?))?;
+        findings.sweeps = timed(observer, "sweeps", &mut times.sweep, || run.sweeps(sweep))?;
     }
     if let Some(branch) = &analysis.continuation {
-        timed("continuation", &mut times.continuation, &mut || Ok(findings.branches = run.branches(branch)?))?;
+        findings.branches = timed(observer, "continuation", &mut times.continuation, || run.branches(branch))?;
     }
     if let Some(impulse) = &analysis.impulse {
-        timed("impulse tests", &mut times.impulse, &mut || Ok(findings.impulses = run.impulses(impulse)?))?;
+        findings.impulses = timed(observer, "impulse tests", &mut times.impulse, || run.impulses(impulse))?;
     }
     if let Some(damage) = &analysis.damage {
-        timed("damage-induced response", &mut times.damage, &mut || {
-            findings.damage = run.damage(&damage.mesh_frequencies_hz)?;
-            findings.damage_speeds = run.damage_speeds(damage)?;
-            Ok(())
-        })?;
+        (findings.damage, findings.damage_speeds) =
+            timed(observer, "damage-induced response", &mut times.damage, || {
+                Ok((run.damage(&damage.mesh_frequencies_hz)?, run.damage_speeds(damage)?))
+            })?;
     }
     Ok(findings)
+}
+
+/// Runs a stage and notes its wall time (s).
+fn timed<R>(
+    observer: &dyn RunObserver,
+    stage: &str,
+    slot: &mut f64,
+    work: impl FnOnce() -> anyhow::Result<R>,
+) -> anyhow::Result<R> {
+    observer.stage(stage);
+    let clock = Instant::now();
+    let result = work();
+    *slot = clock.elapsed().as_secs_f64();
+    result
 }
 
 /// Evenly spaced values from `from` to `to` or just below it.
