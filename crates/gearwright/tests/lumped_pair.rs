@@ -196,10 +196,10 @@ fn run_writes_everything_it_promises() {
     assert!(branch["stability"].iter().any(|s| s == "stable") && branch["stability"].iter().any(|s| s != "stable"));
     // a blow reads sqrt(k / m) at one and at two pairs, supports in series
     let impulse = table(&folder.join("impulse.csv"));
-    let mass = 0.0050 / 0.04563_f64.powi(2);
+    let mass: f64 = 0.0050 / 0.04563_f64.powi(2);
     for (read, k) in of_state(&impulse, "natural_frequency_hz", "healthy").iter().zip([533e6, 806e6]) {
         let series = 1.0 / (1.0 / k + 2e-12);
-        let exact = (series / mass as f64).sqrt() / std::f64::consts::TAU;
+        let exact = (series / mass).sqrt() / std::f64::consts::TAU;
         assert!((read / exact - 1.0).abs() < 1e-4, "{read} {exact}");
     }
     // the difference table is what its columns say; before the damage the pair has all but forgotten it
