@@ -162,6 +162,7 @@ pub fn over_speed(
             names.len() - 1
         })
     };
+    let swept = sweeps.iter().map(|s| &s.state).collect::<std::collections::BTreeSet<_>>().len();
     let mut lines = Vec::new();
     for sweep in sweeps {
         let points = sweep.points.iter().map(|p| (p.mesh_frequency, measure(&p.measure) * 1e6)).collect();
@@ -169,7 +170,8 @@ pub fn over_speed(
         lines.push(line(&format!("{}, {direction}", sweep.state), index_of(&sweep.state), pattern, points));
     }
     for result in branches {
-        let index = index_of(&result.state) + 3;
+        // colours that the sweeps do not have
+        let index = index_of(&result.state) + swept;
         let mut named = [false, false];
         // stretches of one kind, each reaching to the first point of the next
         let curve = result.branch.curve();
