@@ -19,6 +19,26 @@ pub struct TriangleMesh {
     pub bore: Vec<usize>,
 }
 
+impl TriangleMesh {
+    /// Drops nodes without elements (those of triangles outside the gear).
+    fn drop_unused_nodes(&mut self) {
+        let mut used = vec![false; self.nodes.len()];
+        for &node in self.elements.iter().flatten() {
+            used[node] = true;
+        }
+        let mut number = vec![0; self.nodes.len()];
+        let mut kept = Vec::new();
+        for (old, point) in self.nodes.iter().enumerate().filter(|(old, _)| used[*old]) {
+            number[old] = kept.len();
+            kept.push(*point);
+        }
+        self.nodes = kept;
+        for node in self.elements.iter_mut().flatten().chain(&mut self.bore) {
+            *node = number[*node];
+        }
+    }
+}
+
 /// A crack in a tooth: its path from the mouth on the fillet to the tip, in the frame of tooth 0.
 pub struct CrackPath {
     /// Tooth number.
@@ -76,6 +96,15 @@ fn resampled(points: &[Point2<f64>], size: &impl Fn(Point2<f64>) -> f64) -> Vec<
             points[next - 1] + (points[next] - points[next - 1]) * share.clamp(0.0, 1.0)
         })
         .collect()
+}
+
+/// Whether a point lies inside a closed polygon.
+fn is_inside(corners: &[Point2<f64>], point: Point2<f64>) -> bool {
+    let edges = corners.iter().zip(corners.iter().cycle().skip(1));
+    let crossings = edges.filter(|(a, b)| {
+        (a.y > point.y) != (b.y > point.y) && point.x < a.x + (point.y - a.y) / (b.y - a.y) * (b.x - a.x)
+    });
+    crossings.count() % 2 == 1
 }
 
 /// Side of the nearest segment of a polyline on which a point lies.
@@ -295,7 +324,8 @@ fn triangulate(
         triangulation.add_constraint(pair[0], pair[1]);
     }
     let parameters = RefinementParameters::<f64>::new()
-        .exclude_outer_faces(true)
+        // a slit ends inside: what is outside is then told by the outline alone, below
+        .exclude_outer_faces(slit.is_empty())
         .keep_constraint_edges()
         .with_angle_limit(AngleLimit::from_deg(26.0))
         .with_max_additional_vertices(400_000);
@@ -314,11 +344,15 @@ fn triangulate(
         mesh.nodes.push(mesh.nodes[handle.index()]);
     }
     let mut middles: HashMap<(usize, usize), usize> = HashMap::new();
+    let (rim, bore_radius) = (&starts[..bore_start], outline.gear.rim_radius());
     for face in triangulation.inner_faces().filter(|face| !excluded.contains(&face.fix())) {
         let corners = face.vertices().map(|v| v.fix().index());
-        let middle = Point2::from(corners.iter().map(|&c| mesh.nodes[c].coords).sum::<nalgebra::Vector2<f64>>() / 3.0);
+        let centroid = Point2::from(corners.iter().map(|&c| mesh.nodes[c].coords).sum::<nalgebra::Vector2<f64>>() / 3.0);
+        if !slit.is_empty() && (centroid.coords.norm() < bore_radius || !is_inside(rim, centroid)) {
+            continue;
+        }
         let double = |corner: usize| {
-            let doubled = doubles.get(&corner).filter(|_| is_left_of(slit, middle));
+            let doubled = doubles.get(&corner).filter(|_| is_left_of(slit, centroid));
             doubled.copied().unwrap_or(corner)
         };
         let own = corners.map(double);
@@ -345,6 +379,11 @@ fn triangulate(
     }
     mesh.bore.sort_unstable();
     mesh.bore.dedup();
-    ensure!(!mesh.contact_faces.is_empty() && !mesh.bore.is_empty(), "the mesh has no contact faces or no bore");
+    mesh.drop_unused_nodes();
+    let (elements, faces, bore) = (mesh.elements.len(), mesh.contact_faces.len(), mesh.bore.len());
+    ensure!(
+        faces > 0 && bore > 0,
+        "the mesh of {elements} elements has {faces} contact faces and {bore} nodes on the bore"
+    );
     Ok(mesh)
 }
