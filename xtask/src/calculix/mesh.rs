@@ -347,7 +347,8 @@ fn triangulate(
     let (rim, bore_radius) = (&starts[..bore_start], outline.gear.rim_radius());
     for face in triangulation.inner_faces().filter(|face| !excluded.contains(&face.fix())) {
         let corners = face.vertices().map(|v| v.fix().index());
-        let centroid = Point2::from(corners.iter().map(|&c| mesh.nodes[c].coords).sum::<nalgebra::Vector2<f64>>() / 3.0);
+        let centroid =
+            Point2::from(corners.iter().map(|&c| mesh.nodes[c].coords).sum::<nalgebra::Vector2<f64>>() / 3.0);
         if !slit.is_empty() && (centroid.coords.norm() < bore_radius || !is_inside(rim, centroid)) {
             continue;
         }

@@ -37,6 +37,9 @@ pub struct SectorFamily {
     pub(super) at_depth: Mat<f64>,
 }
 
+/// Samples of each flank edge in the search for the elements at matching depth.
+const SAMPLES: u32 = 40;
+
 /// A tooth sector made ready for contact on one flank.
 pub struct ToothSector {
     /// Mesh.
@@ -174,10 +177,16 @@ impl ToothSector {
         let breaks = self.shape.flank(self.side).arc_breaks.clone();
         let mut found = Vec::new();
         for pair in breaks.windows(2) {
-            for k in 0..=8 {
-                let arc = pair[0] + (pair[1] - pair[0]) * f64::from(k) / 8.0;
+            // close enough that an element only clipped between two samples can be left to its neighbour
+            for k in 0..=SAMPLES {
+                let arc = pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(SAMPLES);
                 let (_, _, position, normal) = self.locate_on_flank(arc);
                 let target = position - normal * self.depth;
+                // mostly the element of the sample before
+                let last: &[u32] = found.last().map_or(&[], std::slice::from_ref);
+                if self.holds(last, target) {
+                    continue;
+                }
                 let (element, _) = self.locate_in(&self.shape.tooth_elements, target)?;
                 if !found.contains(&element) {
                     found.push(element);
@@ -193,6 +202,14 @@ impl ToothSector {
         }
         self.depth_elements = found;
         Ok(())
+    }
+
+    /// Whether one of the elements holds a point without extrapolation.
+    fn holds(&self, elements: &[u32], target: Point2<f64>) -> bool {
+        elements.iter().any(|&element| {
+            let points = self.shape.mesh.element_points(element as usize);
+            self.quad.inverse_map(&points, target).is_some_and(|(xi, eta)| xi.abs().max(eta.abs()) <= 1.0)
+        })
     }
 
     /// Element of a list that holds a point, and the local coordinates there.

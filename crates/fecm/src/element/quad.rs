@@ -108,6 +108,8 @@ impl ReferenceQuad {
     #[must_use]
     pub fn inverse_map(&self, nodes: &[Point2<f64>], target: Point2<f64>) -> Option<(f64, f64)> {
         let size = (nodes[nodes.len() - 1] - nodes[0]).norm();
+        // coordinates of a small element far from the origin are not known better than this
+        let tolerance = (1e-13 * size).max(8.0 * f64::EPSILON * target.coords.norm());
         let mut local = Vector2::zeros();
         for _ in 0..30 {
             let (shapes, slopes) = self.shapes(local.x, local.y);
@@ -122,7 +124,7 @@ impl ReferenceQuad {
             if !(local.norm() < 20.0) {
                 return None;
             }
-            if residual.norm() < 1e-13 * size || step.norm() < 1e-13 {
+            if residual.norm() < tolerance || step.norm() < 1e-13 {
                 return Some((local.x, local.y));
             }
         }
