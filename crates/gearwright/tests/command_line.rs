@@ -1,15 +1,10 @@
 //! The program as a user meets it: what it writes, what it says of bad input, what it leaves behind.
 
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+mod common;
 
-fn gearwright(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_gearwright")).args(arguments).current_dir(folder).output().unwrap()
-}
+use std::path::Path;
 
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
+use common::{Scratch, gearwright, text};
 
 /// A small case that runs in well under a second.
 const SMALL: &str = r#"kind = "spur-pair"
@@ -43,34 +38,6 @@ torque_n_m = 200.0
 positions_per_cycle = 10
 model = "plane-strain"
 "#;
-
-struct Scratch(tempfile::TempDir);
-
-impl Scratch {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-
-    fn write(&self, name: &str, content: &str) -> PathBuf {
-        let file = self.path().join(name);
-        std::fs::write(&file, content).unwrap();
-        file
-    }
-
-    /// Names in the folder, sorted.
-    fn names(&self) -> Vec<String> {
-        let mut names: Vec<String> = std::fs::read_dir(self.path())
-            .unwrap()
-            .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
-            .collect();
-        names.sort();
-        names
-    }
-}
 
 #[test]
 fn run_writes_everything_it_promises() {

@@ -1,7 +1,11 @@
 //! Damage in case files: what a run leaves, and what is said of damage that cannot be.
 
+mod common;
+
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
+
+use common::{Scratch, gearwright};
 
 const PAIR: &str = r#"kind = "spur-pair"
 
@@ -41,9 +45,9 @@ face_order = 4
 
 "#;
 
-fn run(folder: &Path, model: &str, damage: &str) -> Output {
-    std::fs::write(folder.join("case.toml"), PAIR.replace("MODEL", model) + damage).unwrap();
-    Command::new(env!("CARGO_BIN_EXE_gearwright")).args(["run", "case.toml"]).current_dir(folder).output().unwrap()
+fn run(scratch: &Scratch, model: &str, damage: &str) -> Output {
+    scratch.write("case.toml", &(PAIR.replace("MODEL", model) + damage));
+    gearwright(scratch.path(), &["run", "case.toml"])
 }
 
 fn column(file: &Path, name: &str) -> Vec<f64> {
@@ -63,8 +67,8 @@ fn sweep_of_cracks_and_pits_leaves_tables_plots_and_grids() {
             1,
         ),
     ] {
-        let scratch = tempfile::tempdir().unwrap();
-        let output = run(scratch.path(), model, damage);
+        let scratch = Scratch::new();
+        let output = run(&scratch, model, damage);
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let folder = scratch.path().join("out/case");
         let increase = column(&folder.join("damage.csv"), "ste_increase_max_percent");
@@ -122,8 +126,8 @@ fn impossible_damage_is_explained_at_its_line() {
             &["case.toml:39", "same length", "3"],
         ),
     ] {
-        let scratch = tempfile::tempdir().unwrap();
-        let output = run(scratch.path(), model, damage);
+        let scratch = Scratch::new();
+        let output = run(&scratch, model, damage);
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
         assert!(!output.status.success(), "{damage} was accepted");
         for word in wanted {

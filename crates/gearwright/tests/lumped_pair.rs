@@ -1,36 +1,14 @@
 //! Lumped-pair cases as a user meets them: everything promised is written and right, bad input is told, sources agree.
 
+mod common;
+
+use common::{Scratch, gearwright, text};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 use serde_json::Value;
 
-fn gearwright(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_gearwright")).args(arguments).current_dir(folder).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
-
-struct Scratch(tempfile::TempDir);
-
 impl Scratch {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-
-    fn write(&self, name: &str, content: &str) -> PathBuf {
-        let file = self.path().join(name);
-        std::fs::write(&file, content).unwrap();
-        file
-    }
-
     /// Runs a case text into a folder of its name; the folder and its summary.
     fn run(&self, name: &str, content: &str) -> (PathBuf, Value) {
         self.write(&format!("{name}.toml"), content);

@@ -1,10 +1,13 @@
 //! `gearwright hums` as a user meets it, on recordings made here: what it finds, what it says of bad input, what it leaves behind.
 
+mod common;
+
+use common::{Scratch, gearwright, text};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::io::{BufRead as _, BufReader, Read as _};
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::path::Path;
+use std::process::Command;
 
 use hums::difference::RemovalRule;
 use hums::indicator::GearAnalyzer;
@@ -15,14 +18,6 @@ use hums::tsa::{TsaOptions, average, comb_gain};
 const RATE: f64 = 5120.0;
 const SPEED: f64 = 10.0;
 const TEETH: f64 = 27.0;
-
-fn gearwright(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_gearwright")).args(arguments).current_dir(folder).output().unwrap()
-}
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
 
 fn succeed(folder: &Path, arguments: &[&str]) -> String {
     let output = gearwright(folder, arguments);
@@ -89,35 +84,11 @@ fn csv_text(header: &str, columns: &[&[f64]]) -> String {
     text
 }
 
-struct Scratch(tempfile::TempDir);
-
 impl Scratch {
-    fn new() -> Self {
-        Self(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-
-    fn write(&self, name: &str, content: &str) -> PathBuf {
-        let file = self.path().join(name);
-        std::fs::create_dir_all(file.parent().unwrap()).unwrap();
-        std::fs::write(&file, content).unwrap();
-        file
-    }
-
     fn record(&self, name: &str, samples: usize, holds: Holds, seed: u64) -> [Vec<f64>; 2] {
         let [x, tacho] = recording(samples, holds, seed);
         self.write(name, &csv_text("case,tacho", &[&x, &tacho]));
         [x, tacho]
-    }
-
-    fn names(&self) -> Vec<String> {
-        let entries = std::fs::read_dir(self.path()).unwrap();
-        let mut names: Vec<String> = entries.map(|e| e.unwrap().file_name().to_string_lossy().into_owned()).collect();
-        names.sort();
-        names
     }
 }
 
