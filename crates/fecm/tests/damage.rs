@@ -1,5 +1,8 @@
 //! Cracked and pitted teeth.
 
+mod common;
+
+use common::{TORQUE, gear};
 use faer::Mat;
 use fecm::body::ring::RingCompliance;
 use fecm::condense::{CondensedBody, Substructure};
@@ -10,30 +13,11 @@ use fecm::mesh::{MeshDensity, SectorMesh};
 use fecm::ring::{Arc, ring_compliance};
 use fecm::statics::{PairModel, PairModelOptions, PositionResult, PositionStatus, StaticsRequest};
 use fecm::{FaceModel, FecmError, Material};
-use gear_geom::{
-    CrackLength, Damage, FlankSide, Gear, GearPair, GearSpec, Member, Pit, ProfileMeasure, RootCrack, ToothDamage,
-    ToothThickness,
-};
+use gear_geom::{CrackLength, Damage, FlankSide, GearPair, Member, Pit, ProfileMeasure, RootCrack, ToothDamage};
 use nalgebra::Point2;
 
-const TORQUE: f64 = 200.0;
-
-fn gear(teeth: u32) -> Gear {
-    let module = 6e-3;
-    let radius = 0.5 * module * f64::from(teeth);
-    Gear::new(&GearSpec {
-        teeth,
-        thickness: ToothThickness::AtReference(0.5 * std::f64::consts::PI * module - 0.05e-3),
-        tip_radius: radius + module,
-        root_radius: radius - 1.25 * module,
-        rim_radius: 0.4 * radius,
-        ..GearSpec::default()
-    })
-    .unwrap()
-}
-
 fn pair() -> GearPair {
-    GearPair::new(gear(25), gear(31), 168e-3).unwrap()
+    common::pair(25, 31)
 }
 
 fn options(face: FaceModel) -> PairModelOptions {

@@ -1,33 +1,15 @@
 //! What must hold for any pair: equilibrium, the same answer however teeth are numbered, whichever gear is called the pinion, however the
 //! face is turned, wherever matching depth lies, and however many threads work.
 
+mod common;
+
+use common::{TORQUE, gear, pair};
 use fecm::body::BoreCondition;
 use fecm::element::lagrange::{LagrangeBasis, gauss_rule};
 use fecm::statics::{PairModel, PairModelOptions, PositionResult, StaticsRequest};
 use fecm::{FaceModel, SolverKind};
-use gear_geom::{Gear, GearPair, GearSpec, ToothThickness};
+use gear_geom::{Gear, GearPair};
 use nalgebra::{Rotation2, Vector2};
-
-const TORQUE: f64 = 200.0;
-
-fn gear(teeth: u32) -> Gear {
-    let module = 6e-3;
-    let radius = 0.5 * module * f64::from(teeth);
-    Gear::new(&GearSpec {
-        teeth,
-        thickness: ToothThickness::AtReference(0.5 * std::f64::consts::PI * module - 0.05e-3),
-        tip_radius: radius + module,
-        root_radius: radius - 1.25 * module,
-        rim_radius: 0.4 * radius,
-        ..GearSpec::default()
-    })
-    .unwrap()
-}
-
-fn pair(first: u32, second: u32) -> GearPair {
-    let centre_distance = 0.5 * 6e-3 * f64::from(first + second);
-    GearPair::new(gear(first), gear(second), centre_distance).unwrap()
-}
 
 fn coarse(face: FaceModel) -> PairModelOptions {
     let mut options = PairModelOptions { face, ..PairModelOptions::default() };
