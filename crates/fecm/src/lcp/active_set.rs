@@ -1,10 +1,6 @@
-//! Block principal pivoting with Cholesky factors.
+//! Block principal pivoting ([`super::pivoting`]) with Cholesky factors.
 //!
-//! Each step solves for forces and approach as if exactly the cells of the active set touched, then exchanges every cell that is wrong: those
-//! that would pull leave, those that would interpenetrate enter. Exchanging all at once takes a few steps, whatever the number of
-//! cells; when the number of wrong cells stops falling, cells are exchanged one at a time from the largest index (Murty's rule)
-//! until it does (Portugal, Judice and Vicente, *Math. Comp.* 63, 1994, 625-643). If the limit of steps is reached, Lemke's method
-//! finishes, so the outcome does not rest on the heuristic.
+//! If the limit of steps is reached, Lemke's method finishes, so the outcome does not rest on a heuristic.
 //!
 //! A step factors the active block anew: at the sizes of a contact grid (up to some 1500 cells) most exchanges touch a large
 //! part of the set, for which a fresh blocked factorisation is faster than updates.
@@ -12,6 +8,7 @@
 use super::ContactSolver;
 use super::error::LcpError;
 use super::lemke::LemkeSolver;
+use super::pivoting::{CellProblem, block_pivoting};
 use super::problem::{ContactProblem, ContactSolution, OnActive, SolveStatus};
 
 /// Fast solver; see the module header.
@@ -29,45 +26,21 @@ impl Default for ActiveSetSolver {
     }
 }
 
-/// Full exchanges allowed without progress.
-const PATIENCE: usize = 3;
-
 impl ContactSolver for ActiveSetSolver {
     fn solve(&self, problem: &ContactProblem<'_>, warm: Option<&[bool]>) -> Result<ContactSolution, LcpError> {
         problem.check()?;
         if let Some(solution) = problem.trivial() {
             return Ok(solution);
         }
-        let mut active = match warm {
+        let active = match warm {
             Some(warm) if warm.len() == problem.size() && warm.iter().any(|&a| a) => warm.to_vec(),
             _ => first_set(problem),
         };
-        let (mut fewest, mut patience) = (usize::MAX, PATIENCE);
-        let (mut pivots, mut steps) = (0, 0);
-        while steps < self.step_limit {
-            steps += 1;
-            let cells: Vec<usize> = (0..problem.size()).filter(|&i| active[i]).collect();
-            let on = problem.on_active(&cells)?;
-            let wrong = self.wrong_cells(problem, &cells, &active, &on);
-            if wrong.is_empty() {
-                return Ok(problem.finish(&cells, &on, SolveStatus::Converged, pivots, steps));
-            }
-            let exchange = if wrong.len() < fewest {
-                (fewest, patience) = (wrong.len(), PATIENCE);
-                &wrong[..]
-            } else if patience > 0 {
-                patience -= 1;
-                &wrong[..]
-            } else {
-                &wrong[wrong.len() - 1..]
-            };
-            for &cell in exchange {
-                active[cell] = !active[cell];
-            }
-            pivots += exchange.len();
-            if !active.iter().any(|&a| a) {
-                active = first_set(problem);
-            }
+        let mut cells = Loaded { problem, tolerance: self.tolerance };
+        let outcome = block_pivoting(&mut cells, active, self.step_limit)?;
+        let (pivots, steps) = (outcome.pivots, outcome.steps);
+        if let Some((cells, on)) = outcome.found {
+            return Ok(problem.finish(&cells, &on, SolveStatus::Converged, pivots, steps));
         }
         let mut solution = LemkeSolver::default().solve(problem, None)?;
         solution.stats.pivots += pivots;
@@ -76,9 +49,25 @@ impl ContactSolver for ActiveSetSolver {
     }
 }
 
-impl ActiveSetSolver {
-    /// Cells on the wrong side, ascending.
-    fn wrong_cells(&self, problem: &ContactProblem<'_>, cells: &[usize], active: &[bool], on: &OnActive) -> Vec<usize> {
+/// The cells of a contact problem under load.
+struct Loaded<'a> {
+    problem: &'a ContactProblem<'a>,
+    tolerance: f64,
+}
+
+impl CellProblem for Loaded<'_> {
+    type OnActive = OnActive;
+
+    fn size(&self) -> usize {
+        self.problem.size()
+    }
+
+    fn on_active(&mut self, cells: &[usize]) -> Result<OnActive, LcpError> {
+        self.problem.on_active(cells)
+    }
+
+    fn wrong_cells(&self, cells: &[usize], active: &[bool], on: &OnActive) -> Vec<usize> {
+        let problem = self.problem;
         let largest = on.forces.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
         let deflection = problem.deflection(on.closing);
         let gaps = problem.gaps(cells, on);
@@ -87,6 +76,10 @@ impl ActiveSetSolver {
         let mut wrong: Vec<usize> = pulls.chain(overlaps).collect();
         wrong.sort_unstable();
         wrong
+    }
+
+    fn revived(&self) -> Option<Vec<bool>> {
+        Some(first_set(self.problem))
     }
 }
 

@@ -10,15 +10,18 @@
 //!
 //! Two solvers sit behind [`ContactSolver`]: [`ActiveSetSolver`] (block principal pivoting on Cholesky factors, warm-started) for speed, and
 //! [`LemkeSolver`] (complementary pivoting, the method of Vijayakar's modified Simplex algorithm) as reference and fallback. They agree to
-//! rounding; `tests/lcp_solvers.rs` holds them against each other and against enumeration.
+//! rounding; [`solve_held`] is the same for bodies held by inertia, a step of dynamics. `tests/lcp_solvers.rs` holds them against each other and against enumeration.
 
 mod active_set;
 mod error;
+mod held;
 mod lemke;
+mod pivoting;
 mod problem;
 
 pub use active_set::ActiveSetSolver;
 pub use error::LcpError;
+pub use held::{FactorMemory, HeldBlock, HeldProblem, HeldSolution, solve_held, solve_held_by_lemke};
 pub use lemke::{LemkeSolver, solve_lcp};
 pub use problem::{ContactProblem, ContactSolution, SolveStats, SolveStatus};
 
