@@ -61,6 +61,31 @@ pub enum FecmError {
         /// Its size.
         size: usize,
     },
+    /// A position whose static contact problem has no usable solution.
+    #[error(
+        "no static equilibrium at mesh cycle {mesh_cycle:.4} under {torque} N m: the teeth do not reach each other, or the load is far too large"
+    )]
+    NoEquilibrium {
+        /// Mesh cycle.
+        mesh_cycle: f64,
+        /// Torque on the wheel (N m).
+        torque: f64,
+    },
+    /// Gears that leave each other.
+    #[error(
+        "the gears leave each other at mesh cycle {mesh_cycle:.4}, time {time:.6} s: transmission error {transmission_error:.3e} m, \
+         allowed is a quarter of the base pitch, {allowed:.3e} m; look at damping, supports, steps per mesh cycle and the state at the start"
+    )]
+    Separated {
+        /// Mesh cycle.
+        mesh_cycle: f64,
+        /// Time (s).
+        time: f64,
+        /// Dynamic transmission error (m).
+        transmission_error: f64,
+        /// Largest allowed (m).
+        allowed: f64,
+    },
     /// A malformed contact problem.
     #[error(transparent)]
     Contact(#[from] crate::lcp::LcpError),

@@ -9,6 +9,7 @@
 //! | [`halfspace`], [`nearfield`], [`contact`] | local deformation, contact grid and its compliance |
 //! | [`lcp`] | the contact problem and its solvers |
 //! | [`statics`] | transmission error, load sharing and mesh stiffness over the mesh cycle |
+//! | [`dynamics`] | motion in time, with the contact solved at every step |
 //! | [`analytic`] | closed forms for tests and figures |
 //!
 //! ```
@@ -42,6 +43,7 @@ pub mod assembly;
 pub mod body;
 pub mod condense;
 pub mod contact;
+pub mod dynamics;
 pub mod element;
 pub mod error;
 pub mod face;

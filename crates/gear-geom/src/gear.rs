@@ -408,17 +408,18 @@ impl Gear {
         !self.spec.pitch_errors.is_empty() || self.spec.modification != FlankModification::default()
     }
 
+    /// Pitch error of a tooth, any number modulo the number of teeth (m): material removed from its whole flank.
+    #[must_use]
+    pub fn pitch_error(&self, tooth: i64) -> f64 {
+        let errors = &self.spec.pitch_errors;
+        let tooth = tooth.rem_euclid(i64::from(self.spec.teeth)) as usize;
+        tooth.checked_rem(errors.len()).map_or(0.0, |index| errors[index])
+    }
+
     /// Material removed (m) from the flank of a tooth at a roll distance and face position, pitch error included.
     #[must_use]
     pub fn material_removed(&self, tooth: i64, roll: f64, z: f64) -> f64 {
-        let errors = &self.spec.pitch_errors;
-        let pitch = if errors.is_empty() {
-            0.0
-        } else {
-            let tooth = tooth.rem_euclid(i64::from(self.spec.teeth)) as usize;
-            errors[tooth % errors.len()]
-        };
-        pitch + self.spec.modification.deviation(roll, z, self.spec.facewidth)
+        self.pitch_error(tooth) + self.spec.modification.deviation(roll, z, self.spec.facewidth)
     }
 }
 

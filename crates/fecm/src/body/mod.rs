@@ -235,6 +235,12 @@ impl GearBody {
         self.depth
     }
 
+    /// Teeth on either side of a cracked one whose compliance feels the crack.
+    #[must_use]
+    pub fn reach_of_damage(&self) -> i32 {
+        if self.damaged.is_empty() { 0 } else { self.reach + DAMAGE_MARGIN }
+    }
+
     /// Number of teeth.
     #[must_use]
     pub fn teeth(&self) -> i32 {

@@ -14,7 +14,7 @@ use crate::search::{NoCell, OpposedPoints};
 
 /// What one position hands to the next as a start.
 #[derive(Debug, Clone)]
-pub(super) struct Start {
+pub(crate) struct Start {
     /// Closing rotation since first touch (rad).
     pub closing: f64,
     /// Cell size along the profile (m).
@@ -27,13 +27,48 @@ pub(super) struct Start {
 
 /// What to compute at a position.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct PositionRequest<'a> {
+pub(crate) struct PositionRequest<'a> {
     pub mesh_cycle: f64,
     /// First touch without load, if the flanks face each other.
     pub touch: Option<&'a Touch>,
     pub torque: f64,
     pub stiffness_difference: bool,
     pub keep_pressure: bool,
+}
+
+/// How far the grid of a position extends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct GridScope {
+    /// Multiple of the load that the grid shall hold: wider contacts, and pairs that only it closes.
+    pub load_factor: f64,
+}
+
+impl Default for GridScope {
+    fn default() -> Self {
+        Self { load_factor: 1.0 }
+    }
+}
+
+/// A position's contact problem, solved.
+pub(crate) struct Settled {
+    /// Cells, with the gaps at `grid_rotation`.
+    pub grid: ContactGrid,
+    /// Compliance between all cells (m/N).
+    pub compliance: Mat<f64>,
+    /// Forces, and the approach from `grid_rotation` on.
+    pub solution: ContactSolution,
+    /// Whether it can be used.
+    pub status: PositionStatus,
+    /// Closing rotation of the wheel at which the gaps were taken (rad).
+    pub grid_rotation: f64,
+    /// Closing rotation under load (rad).
+    pub rotation: f64,
+    /// Closing rotation at first touch (rad).
+    pub no_load: f64,
+    /// Start for a neighbouring position.
+    pub start: Start,
+    /// Work so far.
+    pub stats: PositionStats,
 }
 
 /// Geometry is set again when the rotation moved by more than this fraction: the error of the linear step is then below
@@ -57,13 +92,33 @@ impl PairModel {
         request: &PositionRequest<'_>,
         start: Option<&Start>,
     ) -> Result<(PositionResult, Option<Start>), FecmError> {
-        let Some(touch) = request.touch else {
+        let Some(settled) = self.settle(request, start, &GridScope::default())? else {
             return Ok((self.untouched(request), None));
+        };
+        let mut stats = settled.stats;
+        let difference = if request.stiffness_difference && request.torque > 0.0 {
+            self.difference_slope(request, &settled, &mut stats.solver)?
+        } else {
+            None
+        };
+        Ok((self.collect(request, &settled, difference, stats), Some(settled.start)))
+    }
+
+    /// Solves the contact problem at a position until the geometry no longer changes. `None` when nothing can touch.
+    pub(crate) fn settle(
+        &self,
+        request: &PositionRequest<'_>,
+        start: Option<&Start>,
+        scope: &GridScope,
+    ) -> Result<Option<Settled>, FecmError> {
+        let Some(touch) = request.touch else {
+            return Ok(None);
         };
         let no_load = touch.rotation;
         let base_radius = self.pairing.base_radius(1);
         let cells = self.options.contact.cells_per_half_width;
-        let mut reach = start.map_or((1.35 * cells).ceil() as i32 + 1, |s| s.reach);
+        let narrowest = (1.35 * scope.load_factor.sqrt() * cells).ceil() as i32 + 1;
+        let mut reach = start.map_or(narrowest, |s| s.reach.max(narrowest));
         let mut cell = start.map_or_else(|| self.cell_size(request.torque), |s| s.cell);
         let most = no_load + MOST_DEFLECTION * self.pairing.pair().base_pitch() / base_radius;
         let mut rotation = match start {
@@ -73,20 +128,19 @@ impl PairModel {
         rotation = rotation.min(most);
         let mut warm = start.cloned();
         let mut stats = PositionStats::default();
-        let mut outcome: Option<(ContactGrid, Mat<f64>, ContactSolution)> = None;
+        let mut outcome: Option<Settled> = None;
         // closing rotation at which the compliance was set
         let mut compliance_from = f64::NAN;
-        let mut status = PositionStatus::NotConverged;
         for update in 0..MOST_UPDATES {
             stats.geometry_updates = update;
-            let grid = self.grid(request, touch, rotation, cell, reach);
+            let grid = self.grid(request, touch, rotation, (cell, reach), scope);
             if grid.size() == 0 {
-                return Ok((self.untouched(request), None));
+                return Ok(None);
             }
             let same_cells = |before: &ContactGrid| grid.has_the_cells_of(before);
             let near_enough = (rotation - compliance_from).abs() < COMPLIANCE_TOLERANCE * (rotation - no_load);
             let compliance = match outcome.take() {
-                Some((before, compliance, _)) if near_enough && same_cells(&before) => compliance,
+                Some(before) if near_enough && same_cells(&before.grid) => before.compliance,
                 _ => {
                     compliance_from = rotation;
                     let bodies = [&*self.bodies[0], &*self.bodies[1]];
@@ -100,20 +154,25 @@ impl PairModel {
             let solution = solve_contact(self.options.contact.solver, &problem, active.as_deref())?;
             stats.solver = stats.solver.followed_by(&solution.stats);
             stats.cells = grid.size();
+            let grid_rotation = rotation;
             let change = solution.approach;
             rotation += change;
             let active = from_cells(&grid, request.mesh_cycle, &solution.forces);
-            warm = Some(Start { closing: rotation - no_load, cell, reach, active });
+            let start = Start { closing: rotation - no_load, cell, reach, active };
+            warm = Some(start.clone());
             let crowded = grid_is_crowded(&grid, &solution.forces);
             let moved = change.abs() * base_radius > ROTATION_TOLERANCE * (rotation - no_load).abs() * base_radius;
             let converged = solution.is_converged();
             let fillet = touches_fillet(&grid, &solution.forces);
-            outcome = Some((grid, compliance, solution));
+            let status = PositionStatus::NotConverged;
+            let settled =
+                Settled { grid, compliance, solution, status, grid_rotation, rotation, no_load, start, stats };
+            let settled = outcome.insert(settled);
             if !converged {
                 break;
             }
             if rotation > most {
-                status = PositionStatus::Overloaded;
+                settled.status = PositionStatus::Overloaded;
                 break;
             }
             if crowded && cell < 0.75 * self.widest_cell() {
@@ -122,29 +181,27 @@ impl PairModel {
             } else if crowded {
                 reach = ((reach * 3 + 1) / 2).min(NearField::MOST_ROWS as i32 / 2 - 1);
             } else if !moved || request.torque == 0.0 {
-                status = if fillet { PositionStatus::FilletContact } else { PositionStatus::Converged };
+                settled.status = if fillet { PositionStatus::FilletContact } else { PositionStatus::Converged };
                 break;
             }
         }
-        let Some((grid, compliance, solution)) = outcome else {
-            return Ok((self.untouched(request), None));
-        };
-        let difference = if request.stiffness_difference && request.torque > 0.0 {
-            self.difference_slope(request, &grid, &compliance, &solution, &mut stats.solver)?
-        } else {
-            None
-        };
-        let result = self.collect(request, &grid, &solution, status, rotation, no_load, difference, stats);
-        Ok((result, warm))
+        Ok(outcome)
     }
 
     /// Pairs that the deflection can close, with rows around their nearest approach, the wheel closed by `rotation`.
-    fn grid(&self, request: &PositionRequest<'_>, touch: &Touch, rotation: f64, cell: f64, reach: i32) -> ContactGrid {
+    fn grid(
+        &self,
+        request: &PositionRequest<'_>,
+        touch: &Touch,
+        rotation: f64,
+        (cell, reach): (f64, i32),
+        scope: &GridScope,
+    ) -> ContactGrid {
         let mut pairs = Vec::new();
         let deflection = (rotation - touch.rotation).max(0.0) * self.pairing.base_radius(1);
         for approach in &touch.approaches {
             // a pair that was apart by more than the deflection and half as much again stays apart
-            if approach.gap > 1.5 * deflection.max(1e-3 * cell) {
+            if approach.gap > 1.5 * scope.load_factor * deflection.max(1e-3 * cell) {
                 continue;
             }
             let pair = approach.pair;
@@ -162,11 +219,10 @@ impl PairModel {
     fn difference_slope(
         &self,
         request: &PositionRequest<'_>,
-        grid: &ContactGrid,
-        compliance: &Mat<f64>,
-        solution: &ContactSolution,
+        settled: &Settled,
         stats: &mut SolveStats,
     ) -> Result<Option<f64>, FecmError> {
+        let Settled { grid, compliance, solution, .. } = settled;
         let (gaps, arms) = (grid.gaps(), grid.wheel_arms());
         let active: Vec<bool> = solution.forces.iter().map(|&f| f > 0.0).collect();
         let mut rotations = [0.0; 2];
@@ -182,18 +238,14 @@ impl PairModel {
         Ok((opening > 0.0).then(|| 2.0 * TORQUE_STEP * request.torque / opening))
     }
 
-    #[allow(clippy::too_many_arguments)]
     fn collect(
         &self,
         request: &PositionRequest<'_>,
-        grid: &ContactGrid,
-        solution: &ContactSolution,
-        status: PositionStatus,
-        rotation: f64,
-        no_load: f64,
+        settled: &Settled,
         difference: Option<f64>,
         mut stats: PositionStats,
     ) -> PositionResult {
+        let &Settled { ref grid, ref solution, status, rotation, no_load, .. } = settled;
         let radius = self.pairing.base_radius(1);
         let (ste, no_load_te) = (radius * rotation, radius * no_load);
         let deflection = ste - no_load_te;

@@ -1,0 +1,255 @@
+//! Contact of a mesh at one position, as a step of dynamics needs it.
+//!
+//! The cells, gaps and compliance are those of the static solution at the position ([`crate::statics`]), taken wide enough for more than the static
+//! load. Motions of the hubs and elastic modes open the gaps linearly from there:
+//!
+//! `gap = g + R q + Phi eta + C_res f`, `C_res = C - Phi Omega^-2 Phi^T`
+//!
+//! with `C` the static compliance and `C_res` what the kept modes leave of it (residual flexibility; R. H. MacNeal, *Comput. Struct.* 1, 1971,
+//! 581-601), so that a slow motion is the static answer whatever the number of modes. With the modes of a step eliminated the compliance is
+//! `C - Phi (Omega^-2 - A_mm^-1) Phi^T`. The linearisation errs by `(q - q_static)^2 / 2 R`: some nanometres at the edge of losing contact.
+
+use faer::Mat;
+use nalgebra::{Point2, Vector2};
+
+use super::system::{StepMatrix, System};
+use crate::error::FecmError;
+use crate::lcp::FactorMemory;
+use crate::linalg::{add_product, column_slice_mut};
+use crate::pairing::Pairing;
+use crate::statics::{PairModel, PressurePatch, Settled};
+
+/// Cells of one tooth pair within an operator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PairCells {
+    /// Tooth-pair number at the position where the operator was made.
+    pub pair: i32,
+    /// First cell.
+    pub start: usize,
+    /// Number of cells.
+    pub count: usize,
+    /// Whether load in the first or last row would want more rows.
+    pub open_ends: [bool; 2],
+}
+
+/// Which flanks an operator's cells lie on, and how its plane lies in space.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Flanks {
+    /// The pinion drives.
+    Drive,
+    /// The wheel drives: the same pair seen in a mirror that exchanges the flanks, with this closing rotation of the mirrored wheel when the real
+    /// one is at its nominal rotation (rad, negative by the backlash).
+    Coast {
+        /// See above.
+        offset: f64,
+    },
+}
+
+/// See the module header.
+pub(super) struct Operator {
+    pub pairs: Vec<PairCells>,
+    pub columns: usize,
+    /// `g` at `q = 0`, `eta = 0` (m).
+    pub gap: Vec<f64>,
+    /// `R`: cells x rigid coordinates.
+    pub motion: Mat<f64>,
+    /// `R - Phi A_mm^-1 A_mr`.
+    pub step_motion: Mat<f64>,
+    /// `Phi`: cells x modes.
+    pub modes: Mat<f64>,
+    /// `C - Phi (Omega^-2 - A_mm^-1) Phi^T` (m/N).
+    pub compliance: Mat<f64>,
+    /// Arms about the wheel's axis (m).
+    pub arms: Vec<f64>,
+    /// Static closing rotation of the wheel (rad), in the frame of the flanks.
+    pub rotation: f64,
+    /// Closing rotation at first touch (rad).
+    pub no_load: f64,
+    /// Largest closing rotation at which all pairs that can touch are in the grid (rad).
+    pub most: f64,
+    /// Static cell forces (N).
+    pub static_forces: Vec<f64>,
+    pub memory: FactorMemory,
+    /// Geometry for pressure snapshots.
+    rolls: Vec<[f64; 2]>,
+    face: Vec<f64>,
+    cell: [f64; 2],
+    mirrored: bool,
+}
+
+/// Modal displacement of flanks: `Phi` for the cells of an operator.
+pub(super) trait FlankModes: Sync {
+    /// Fills `phi` (cells x modes) with the opening of each cell by unit modal coordinates.
+    fn openings(&self, settled: &Settled, model: &PairModel, phi: &mut Mat<f64>) -> Result<(), FecmError>;
+}
+
+impl Operator {
+    /// From the static solution at a position.
+    pub fn new(
+        settled: Settled,
+        model: &PairModel,
+        load_factor: f64,
+        flanks: Flanks,
+        (system, step): (&System, &StepMatrix),
+        flank_modes: &dyn FlankModes,
+    ) -> Result<Self, FecmError> {
+        let pairing = model.pairing();
+        let grid = &settled.grid;
+        let columns = grid.face.centres.len();
+        let size = grid.size();
+        let arms = grid.wheel_arms();
+        let mut gap = grid.gaps();
+        // from the rotation at which the gaps were taken to none of the mirrored or real wheel
+        let from = match flanks {
+            Flanks::Drive => settled.grid_rotation,
+            Flanks::Coast { offset } => settled.grid_rotation - offset,
+        };
+        for (gap, arm) in gap.iter_mut().zip(&arms) {
+            *gap += arm * from;
+        }
+        let motion = motions(&settled, pairing, flanks, system);
+        let mut modes = Mat::zeros(size, system.mode_count());
+        let mut compliance = settled.compliance;
+        let mut step_motion = motion.clone();
+        let settled = Settled { compliance: Mat::new(), ..settled };
+        // teeth that meet on their coast flanks deform as they would at rest
+        if system.mode_count() > 0 && flanks == Flanks::Drive {
+            flank_modes.openings(&settled, model, &mut modes)?;
+            let mut scaled = modes.clone();
+            for (k, (w, a)) in system.frequencies().iter().zip(&step.modal).enumerate() {
+                column_slice_mut(&mut scaled, k).iter_mut().for_each(|v| *v *= 1.0 / (w * w) - 1.0 / a);
+            }
+            add_product(compliance.as_mut(), -1.0, scaled.as_ref(), modes.transpose());
+            let mut divided = modes.clone();
+            for (k, a) in step.modal.iter().enumerate() {
+                column_slice_mut(&mut divided, k).iter_mut().for_each(|v| *v /= a);
+            }
+            add_product(step_motion.as_mut(), -1.0, divided.as_ref(), step.coupling.transpose());
+        }
+        let grid = settled.grid;
+        let mut pairs = Vec::new();
+        let mut start = 0;
+        for pair in &grid.pairs {
+            let count = pair.rows.len() * columns;
+            pairs.push(PairCells { pair: pair.pair, start, count, open_ends: pair.limits.map(|l| l.is_none()) });
+            start += count;
+        }
+        let rows = grid.pairs.iter().flat_map(|pair| &pair.rows);
+        Ok(Self {
+            pairs,
+            columns,
+            gap,
+            motion,
+            step_motion,
+            modes,
+            compliance,
+            arms,
+            rotation: settled.rotation,
+            no_load: settled.no_load,
+            most: settled.no_load + load_factor * (settled.rotation - settled.no_load),
+            static_forces: settled.solution.forces,
+            memory: FactorMemory::default(),
+            rolls: rows.map(|row| [row.pinion_roll, row.wheel_roll]).collect(),
+            cell: [grid.cell, grid.face.width],
+            mirrored: grid.face.mirrored,
+            face: grid.face.centres,
+        })
+    }
+
+    /// Whether load reaches a row beyond which the grid could go on.
+    pub fn is_crowded(&self, forces: &[f64]) -> bool {
+        let loaded = |cells: &[f64]| cells.iter().any(|&f| f > 0.0);
+        self.pairs.iter().any(|pair| {
+            let own = &forces[pair.start..pair.start + pair.count];
+            (pair.open_ends[0] && loaded(&own[..self.columns]))
+                || (pair.open_ends[1] && loaded(&own[pair.count - self.columns..]))
+        })
+    }
+
+    /// Generalised force `(R, Phi)^T f`.
+    pub fn generalised(&self, forces: &[f64]) -> Vec<f64> {
+        let of = |matrix: &Mat<f64>, k: usize| -> f64 {
+            matrix.col_as_slice(k).iter().zip(forces).map(|(r, f)| r * f).sum()
+        };
+        let rigid = (0..self.motion.ncols()).map(|k| of(&self.motion, k));
+        let modal = (0..self.modes.ncols()).map(|k| of(&self.modes, k));
+        rigid.chain(modal).collect()
+    }
+
+    /// Force of every pair with cells (N), pair numbers moved by `shift`.
+    pub fn pair_forces(&self, forces: &[f64], shift: i32) -> impl Iterator<Item = (i32, f64)> {
+        self.pairs
+            .iter()
+            .map(move |pair| (pair.pair + shift, forces[pair.start..pair.start + pair.count].iter().sum::<f64>()))
+    }
+
+    /// Energy stored in the compliance that no mode carries: `1/2 f C_res f` (J), from the step's compliance.
+    pub fn local_energy(&self, forces: &[f64], modal: &[f64]) -> f64 {
+        let mut energy = 0.0;
+        for (j, &force) in forces.iter().enumerate().filter(|(_, f)| **f != 0.0) {
+            let column = self.compliance.col_as_slice(j);
+            energy += force * column.iter().zip(forces).map(|(c, f)| c * f).sum::<f64>();
+        }
+        for (k, a) in modal.iter().enumerate() {
+            let push: f64 = self.modes.col_as_slice(k).iter().zip(forces).map(|(p, f)| p * f).sum();
+            energy -= push * push / a;
+        }
+        0.5 * energy
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        let n = self.gap.len();
+        8 * n * (n + 2 * self.motion.ncols() + self.modes.ncols() + 8)
+    }
+
+    /// Pressures of loaded pairs.
+    pub fn patches(&self, forces: &[f64], shift: i32) -> Vec<PressurePatch> {
+        let places = if self.mirrored { 2.0 } else { 1.0 };
+        let area = self.cell[0] * self.cell[1] * places;
+        let loaded =
+            self.pairs.iter().filter(|pair| forces[pair.start..pair.start + pair.count].iter().any(|&f| f > 0.0));
+        loaded
+            .map(|pair| {
+                let own = &forces[pair.start..pair.start + pair.count];
+                let rows = pair.start / self.columns..(pair.start + pair.count) / self.columns;
+                PressurePatch {
+                    pair: pair.pair + shift,
+                    pinion_roll: self.rolls[rows.clone()].iter().map(|r| r[0]).collect(),
+                    wheel_roll: self.rolls[rows].iter().map(|r| r[1]).collect(),
+                    face: self.face.clone(),
+                    cell: self.cell,
+                    pressure: own.chunks(self.columns).map(|row| row.iter().map(|f| f / area).collect()).collect(),
+                }
+            })
+            .collect()
+    }
+}
+
+/// `R`: the work of a unit force of each cell on unit rigid coordinates. A mirrored cell stands for two places whose tilts cancel.
+fn motions(settled: &Settled, pairing: &Pairing, flanks: Flanks, system: &System) -> Mat<f64> {
+    let pair = pairing.pair();
+    let centres = [gear_geom::Member::Pinion, gear_geom::Member::Wheel].map(|member| pair.centre(member));
+    let mirror = |v: Vector2<f64>| if flanks == Flanks::Drive { v } else { Vector2::new(v.x, -v.y) };
+    let grid = &settled.grid;
+    let rows: Vec<(Point2<f64>, Vector2<f64>)> = (grid.pairs.iter().flat_map(|pair| &pair.rows))
+        .map(|row| (Point2::from(mirror(row.position.coords)), mirror(row.normal)))
+        .collect();
+    let columns = grid.face.centres.len();
+    Mat::from_fn(rows.len() * columns, system.rigid_count(), |cell, coordinate| {
+        let (body, axis) = system.coordinates[coordinate];
+        let (position, normal) = rows[cell / columns];
+        let z = if grid.face.mirrored { 0.0 } else { grid.face.centres[cell % columns] };
+        let lever = position - centres[body];
+        let along = match axis {
+            0 => normal.x,
+            1 => normal.y,
+            3 => -z * normal.y,
+            4 => z * normal.x,
+            5 => lever.x * normal.y - lever.y * normal.x,
+            _ => 0.0,
+        };
+        // the normal is the direction of the force on the wheel: the wheel opens along it, the pinion against it
+        if body == 0 { -along } else { along }
+    })
+}
