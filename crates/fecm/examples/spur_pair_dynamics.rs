@@ -63,10 +63,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         torque: 424.0,
         pulse: None,
         initial: InitialState::Equilibrium,
-        steps: 50 * cycles,
         snapshots: Vec::new(),
     };
-    let run = PairDynamics::new(&model, &options)?.run(&request, &())?;
+    let run = PairDynamics::new(&model, &options)?.run(&request, 50 * cycles, &())?;
     let last = &run.records[run.records.len() - 50..];
     for record in last.iter().step_by(5) {
         println!(

@@ -25,5 +25,5 @@ pub use options::{
     TorquePulse,
 };
 pub use result::{DynamicsRun, EnergyBalance, RunStats, Snapshot, StepRecord};
-pub use run::PairDynamics;
+pub use run::{PairDynamics, Runner, SteadySpec};
 pub use system::{Damping, HUB_COORDINATES, ROTATION, Support};

@@ -116,8 +116,6 @@ pub struct DynamicsRequest {
     pub pulse: Option<TorquePulse>,
     /// How the run begins.
     pub initial: InitialState,
-    /// Steps to compute.
-    pub steps: usize,
     /// Steps, counted from step 0, whose pressures are kept.
     pub snapshots: Vec<i64>,
 }

@@ -1,5 +1,6 @@
 //! Steps in time.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use faer::Mat;
@@ -56,17 +57,28 @@ impl<'a> PairDynamics<'a> {
         Ok(Self { model, healthy, options: options.clone(), system })
     }
 
-    /// Runs.
+    /// Runs `steps` steps from the start.
     ///
     /// # Errors
     /// Requests out of range, positions without static equilibrium, gears that leave each other.
-    pub fn run(&self, request: &DynamicsRequest, observer: &dyn Observer) -> Result<DynamicsRun, FecmError> {
+    pub fn run(
+        &self,
+        request: &DynamicsRequest,
+        steps: usize,
+        observer: &dyn Observer,
+    ) -> Result<DynamicsRun, FecmError> {
+        self.start(request)?.advance(steps, observer)
+    }
+
+    /// Makes ready to run, piece by piece.
+    ///
+    /// # Errors
+    /// Requests out of range, no static equilibrium at the start.
+    pub fn start(&self, request: &DynamicsRequest) -> Result<Runner<'_>, FecmError> {
         request.validate()?;
-        let started = Instant::now();
         let pitch = 2.0 * std::f64::consts::PI / f64::from(self.model.bodies()[0].teeth());
         let weights = self.options.integrator.weights(request.time_step(pitch));
-        let step = self.system.step_matrix(&weights);
-        let standing = matches!(request.motion, Motion::Standing { .. });
+        let matrix = Arc::new(self.system.step_matrix(&weights));
         let schedule = Schedule::new(ScheduleSpec {
             model: self.model,
             healthy: self.healthy.as_ref().unwrap_or(self.model),
@@ -77,49 +89,27 @@ impl<'a> PairDynamics<'a> {
                 Motion::Standing { .. } => 1,
             },
             system: &self.system,
-            step: &step,
+            step: Arc::clone(&matrix),
             modes: &NoModes,
             most_bytes: self.options.operator_memory,
         });
-        let radii = [0, 1].map(|index| self.model.pairing().base_radius(index));
+        let pair = self.model.pairing();
         let mut stepper = Stepper {
             system: &self.system,
             weights,
-            matrix: &step,
+            matrix,
             schedule,
             solver: self.options.solver,
-            request,
-            standing,
-            radii,
+            request: request.clone(),
+            standing: matches!(request.motion, Motion::Standing { .. }),
+            radii: [0, 1].map(|index| pair.base_radius(index)),
             rotation_rows: [0, 1].map(|body| self.system.row(body, ROTATION)),
-            closing: self.model.pairing().pair().closing_direction(),
-            most: MOST_DEFLECTION * self.model.pairing().pair().base_pitch(),
+            closing: pair.pair().closing_direction(),
+            most: MOST_DEFLECTION * pair.pair().base_pitch(),
             stats: RunStats::default(),
         };
-        let mut state = stepper.initial()?;
-        let mut energy = EnergyBalance::default();
-        let mut records = Vec::with_capacity(request.steps);
-        let mut snapshots = Vec::new();
-        for done in 0..request.steps {
-            if observer.is_cancelled() {
-                break;
-            }
-            if !standing && state.step.rem_euclid(AHEAD) == 0 || done == 0 {
-                let left = (request.steps - done) as i64;
-                let until = state.step + left.min(AHEAD) + 1;
-                stepper.schedule.prepare(if standing { 0..1 } else { state.step + 1..until })?;
-            }
-            let keep = request.snapshots.contains(&(state.step + 1));
-            let (next, record, snapshot) = stepper.advance(&state, keep)?;
-            stepper.account(&mut energy, &state, &next);
-            records.push(record);
-            snapshots.extend(snapshot);
-            state = next;
-            observer.advanced(done + 1, request.steps);
-        }
-        let stats = RunStats { steps: records.len(), time: started.elapsed(), ..stepper.stats };
-        let coordinates = self.system.coordinates.clone();
-        Ok(DynamicsRun { time_step: weights.step, records, coordinates, snapshots, state, energy, stats })
+        let state = stepper.initial()?;
+        Ok(Runner { stepper, state, energy: EnergyBalance::default(), prepared: None })
     }
 
     /// Mesh cycles after which the teeth in mesh repeat, for pairs that differ from others: 1 for a healthy pair.
@@ -129,14 +119,113 @@ impl<'a> PairDynamics<'a> {
     }
 }
 
+/// A run under way.
+pub struct Runner<'a> {
+    stepper: Stepper<'a>,
+    state: DynamicsState,
+    energy: EnergyBalance,
+    /// Step up to which operators were made ahead.
+    prepared: Option<i64>,
+}
+
+impl Runner<'_> {
+    /// Where the run stands: what [`InitialState::Given`] takes to go on from here.
+    #[must_use]
+    pub fn state(&self) -> &DynamicsState {
+        &self.state
+    }
+
+    /// The next steps; energies and counters go on from the start of the run. Fewer steps where cancelled.
+    ///
+    /// # Errors
+    /// Positions without static equilibrium, gears that leave each other.
+    pub fn advance(&mut self, steps: usize, observer: &dyn Observer) -> Result<DynamicsRun, FecmError> {
+        let started = Instant::now();
+        let mut records = Vec::with_capacity(steps);
+        let mut snapshots = Vec::new();
+        for done in 0..steps {
+            if observer.is_cancelled() {
+                break;
+            }
+            let next = self.state.step + 1;
+            if self.prepared.is_none_or(|prepared| next >= prepared) {
+                let end = next + AHEAD.min((steps - done) as i64);
+                self.stepper.schedule.prepare(if self.stepper.standing { 0..1 } else { next..end })?;
+                self.prepared = Some(end);
+            }
+            let keep = self.stepper.request.snapshots.contains(&next);
+            let (next, record, snapshot) = self.stepper.advance(&self.state, keep)?;
+            self.stepper.account(&mut self.energy, &self.state, &next);
+            records.push(record);
+            snapshots.extend(snapshot);
+            self.state = next;
+            observer.advanced(done + 1, steps);
+        }
+        self.stepper.stats.steps += records.len();
+        self.stepper.stats.time += started.elapsed();
+        Ok(DynamicsRun {
+            time_step: self.stepper.weights.step,
+            records,
+            coordinates: self.stepper.system.coordinates.clone(),
+            snapshots,
+            state: self.state.clone(),
+            energy: self.energy,
+            stats: self.stepper.stats,
+        })
+    }
+
+    /// Goes on period by period until the transmission error repeats: the root mean square of its change from period to period falls below
+    /// `tolerance` times that of its own variation. Returns the last period, and the change reached.
+    ///
+    /// # Errors
+    /// As [`Self::advance`]; a period of no steps.
+    pub fn settle(&mut self, spec: &SteadySpec, observer: &dyn Observer) -> Result<(DynamicsRun, f64), FecmError> {
+        if spec.period == 0 || spec.most_periods < 2 {
+            let allowed = "a period of at least one step, and two periods";
+            return Err(FecmError::Option { name: "steps of a period", value: spec.period as f64, allowed });
+        }
+        let mut last = self.advance(spec.period, observer)?;
+        let mut change = f64::INFINITY;
+        for done in 1..spec.most_periods {
+            let next = self.advance(spec.period, observer)?;
+            let (before, now) = (last.transmission_errors(), next.transmission_errors());
+            last = next;
+            if now.len() < spec.period {
+                break;
+            }
+            let mean = now.iter().sum::<f64>() / now.len() as f64;
+            let square = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>();
+            let difference = square(&mut before.iter().zip(&now).map(|(a, b)| b - a));
+            let variation = square(&mut now.iter().map(|x| x - mean)).max(1e-30);
+            change = (difference / variation).sqrt();
+            observer.advanced(done, spec.most_periods);
+            if change < spec.tolerance {
+                break;
+            }
+        }
+        Ok((last, change))
+    }
+}
+
+/// When a run counts as steady.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SteadySpec {
+    /// Steps after which it should repeat.
+    pub period: usize,
+    /// Relative change from period to period.
+    pub tolerance: f64,
+    /// Periods to give up after.
+    pub most_periods: usize,
+}
+
 /// What one step uses.
 struct Stepper<'a> {
     system: &'a System,
     weights: Weights,
-    matrix: &'a StepMatrix,
+    matrix: Arc<StepMatrix>,
     schedule: Schedule<'a>,
     solver: StepSolver,
-    request: &'a DynamicsRequest,
+    request: DynamicsRequest,
     standing: bool,
     radii: [f64; 2],
     rotation_rows: [Option<usize>; 2],
@@ -305,7 +394,7 @@ impl Stepper<'_> {
             if watch_back {
                 blocks.push(self.schedule.take(&back_place)?);
             }
-            let solved = solve_blocks(self.solver, &mut blocks, &modal, self.matrix, &load);
+            let solved = solve_blocks(self.solver, &mut blocks, &modal, &self.matrix, &load);
             let outcome = solved.map(|solution| {
                 let drive = &solution.forces[0];
                 let closing = self.closing_rotation(&solution.coordinates);

@@ -5,6 +5,7 @@
 //! parallel, always the same chunks: what a step computes does not depend on the number of threads, nor on what was computed before.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
@@ -54,7 +55,7 @@ pub(super) struct Schedule<'a> {
     window: [i64; 2],
     special: [Vec<i64>; 2],
     system: &'a System,
-    step: &'a StepMatrix,
+    step: Arc<StepMatrix>,
     modes: &'a dyn FlankModes,
     chunks: BTreeMap<ChunkKey, Chunk>,
     clock: u64,
@@ -73,7 +74,6 @@ const MISSING: FecmError =
     FecmError::Option { name: "operator of a step", value: f64::NAN, allowed: "made before it is used" };
 
 /// What a schedule rests on.
-#[derive(Clone, Copy)]
 pub(super) struct ScheduleSpec<'a> {
     pub model: &'a PairModel,
     pub healthy: &'a PairModel,
@@ -84,7 +84,7 @@ pub(super) struct ScheduleSpec<'a> {
     /// Steps a mesh cycle.
     pub steps: usize,
     pub system: &'a System,
-    pub step: &'a StepMatrix,
+    pub step: Arc<StepMatrix>,
     pub modes: &'a dyn FlankModes,
     /// Memory for operators (bytes).
     pub most_bytes: usize,
@@ -235,7 +235,7 @@ impl<'a> Schedule<'a> {
                 return Err(FecmError::NoEquilibrium { mesh_cycle: real, torque: self.torque });
             };
             start = Some(settled.start.clone());
-            let system = (self.system, self.step);
+            let system = (self.system, &*self.step);
             made.push(Operator::new(settled, model, load_factor, flanks, system, self.modes)?);
         }
         Ok(made)
