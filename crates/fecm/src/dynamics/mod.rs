@@ -11,6 +11,7 @@
 //!
 //! Left out: friction, Coriolis and centrifugal terms of the elastic motion in the turning frame, inertia coupling between hub translations and modes.
 
+mod impulse;
 mod integrator;
 mod operator;
 mod options;
@@ -19,6 +20,7 @@ mod run;
 mod schedule;
 mod system;
 
+pub use impulse::{ImpulseReading, ImpulseSpec};
 pub use integrator::Integrator;
 pub use options::{
     DynamicsOptions, DynamicsRequest, DynamicsState, InitialState, Motion, RotorInertia, RotorOptions, StepSolver,

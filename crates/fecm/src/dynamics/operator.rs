@@ -14,7 +14,7 @@ use nalgebra::{Point2, Vector2};
 
 use super::system::{StepMatrix, System};
 use crate::error::FecmError;
-use crate::lcp::FactorMemory;
+use crate::lcp::{FactorMemory, HeldBlock, HeldProblem, solve_held};
 use crate::linalg::{add_product, column_slice_mut};
 use crate::pairing::Pairing;
 use crate::statics::{PairModel, PressurePatch, Settled};
@@ -59,8 +59,6 @@ pub(super) struct Operator {
     pub modes: Mat<f64>,
     /// `C - Phi (Omega^-2 - A_mm^-1) Phi^T` (m/N).
     pub compliance: Mat<f64>,
-    /// Arms about the wheel's axis (m).
-    pub arms: Vec<f64>,
     /// Static closing rotation of the wheel (rad), in the frame of the flanks.
     pub rotation: f64,
     /// Closing rotation at first touch (rad).
@@ -143,7 +141,6 @@ impl Operator {
             step_motion,
             modes,
             compliance,
-            arms,
             rotation: settled.rotation,
             no_load: settled.no_load,
             most: settled.no_load + load_factor * (settled.rotation - settled.no_load),
@@ -183,18 +180,33 @@ impl Operator {
             .map(move |pair| (pair.pair + shift, forces[pair.start..pair.start + pair.count].iter().sum::<f64>()))
     }
 
-    /// Energy stored in the compliance that no mode carries: `1/2 f C_res f` (J), from the step's compliance.
-    pub fn local_energy(&self, forces: &[f64], modal: &[f64]) -> f64 {
-        let mut energy = 0.0;
-        for (j, &force) in forces.iter().enumerate().filter(|(_, f)| **f != 0.0) {
-            let column = self.compliance.col_as_slice(j);
-            energy += force * column.iter().zip(forces).map(|(c, f)| c * f).sum::<f64>();
+    /// Energy stored in the compliance that no mode carries (J), `1/2 f C_res f`, with the forces that positions of hubs and modes imply.
+    /// Only drive flanks; `C_res` is built for this, so it costs a factorisation.
+    pub fn energy_at(&self, q: &[f64], eta: &[f64], modal: &[f64], system: &System) -> Result<f64, FecmError> {
+        let mut gap = self.gap.clone();
+        let columns =
+            (0..q.len()).map(|k| (&self.motion, k, q[k])).chain((0..eta.len()).map(|k| (&self.modes, k, eta[k])));
+        for (matrix, k, value) in columns {
+            for (gap, rate) in gap.iter_mut().zip(matrix.col_as_slice(k)) {
+                *gap += rate * value;
+            }
         }
-        for (k, a) in modal.iter().enumerate() {
-            let push: f64 = self.modes.col_as_slice(k).iter().zip(forces).map(|(p, f)| p * f).sum();
-            energy -= push * push / a;
+        // C_res = C_step - Phi A_mm^-1 Phi^T
+        let mut residual = self.compliance.clone();
+        if system.mode_count() > 0 {
+            let mut divided = self.modes.clone();
+            for (k, a) in modal.iter().enumerate() {
+                column_slice_mut(&mut divided, k).iter_mut().for_each(|v| *v /= a);
+            }
+            add_product(residual.as_mut(), -1.0, divided.as_ref(), self.modes.transpose());
         }
-        0.5 * energy
+        let none = Mat::zeros(gap.len(), 0);
+        let stiffness = Mat::zeros(0, 0);
+        let block = HeldBlock { compliance: residual.as_ref(), motion: none.as_ref(), gap: &gap };
+        let problem = HeldProblem { blocks: vec![block], stiffness: stiffness.as_ref(), load: &[] };
+        let solution = solve_held(&problem, &mut [FactorMemory::default()])?;
+        // in contact the gap is closed by the compliance alone: f C f = - f g
+        Ok(solution.forces.iter().flatten().zip(&gap).map(|(f, g)| -0.5 * f * g).sum())
     }
 
     /// Bytes held.

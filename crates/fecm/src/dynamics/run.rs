@@ -13,7 +13,7 @@ use super::schedule::{LEVELS, Place, Schedule, ScheduleSpec, mirrored};
 use super::system::{BodyTerms, Generalised, ROTATION, StepMatrix, System};
 use crate::error::FecmError;
 use crate::lcp::{FactorMemory, HeldBlock, HeldProblem, HeldSolution, solve_held, solve_held_by_lemke};
-use crate::statics::{Observer, PairModel, Settled};
+use crate::statics::{Observer, PairModel, Settled, StaticsRequest};
 
 /// A gear pair made ready to run: options checked, bodies assembled.
 pub struct PairDynamics<'a> {
@@ -26,6 +26,8 @@ pub struct PairDynamics<'a> {
 
 /// Steps whose operators are made ahead, in parallel.
 const AHEAD: i64 = 50;
+/// Width of the grids for the energy in the contact: six times the static load.
+const ENERGY_LEVEL: u32 = 2;
 /// Deflection at which a run is given up, in base pitches.
 const MOST_DEFLECTION: f64 = 0.25;
 
@@ -112,6 +114,33 @@ impl<'a> PairDynamics<'a> {
         Ok(Runner { stepper, state, energy: EnergyBalance::default(), prepared: None })
     }
 
+    /// About the natural frequency of the pair on the tangent stiffness of a position (Hz), bearings held.
+    pub(super) fn frequency_guess(&self, mesh_cycle: f64, torque: f64) -> Result<f64, FecmError> {
+        let pairing = self.model.pairing();
+        let request = StaticsRequest {
+            mesh_cycles: vec![mesh_cycle],
+            torques: vec![torque],
+            stiffness_difference: false,
+            keep_pressure: false,
+        };
+        let solved = self.model.solve(&request, &())?;
+        let stiffness = solved.results.first().and_then(|row| row.first()).and_then(|r| r.stiffness_local_slope);
+        let stiffness = stiffness.ok_or(FecmError::NoEquilibrium { mesh_cycle, torque })?;
+        let inverse_mass: f64 = (0..2)
+            .filter(|&body| self.system.row(body, ROTATION).is_some())
+            .map(|body| pairing.base_radius(body).powi(2) / self.options.rotors[body].inertia.polar)
+            .sum();
+        if inverse_mass > 0.0 {
+            Ok((stiffness * inverse_mass).sqrt() / (2.0 * std::f64::consts::PI))
+        } else {
+            Err(FecmError::Option {
+                name: "free rotations",
+                value: 0.0,
+                allowed: "at least one gear whose rotation is not fixed",
+            })
+        }
+    }
+
     /// Mesh cycles after which the teeth in mesh repeat, for pairs that differ from others: 1 for a healthy pair.
     #[must_use]
     pub fn period(&self) -> i64 {
@@ -133,6 +162,20 @@ impl Runner<'_> {
     #[must_use]
     pub fn state(&self) -> &DynamicsState {
         &self.state
+    }
+
+    /// Transmission error where the run stands (m).
+    #[must_use]
+    pub fn transmission_error(&self) -> f64 {
+        self.stepper.transmission_error(&self.state.position)
+    }
+
+    /// Kinetic and elastic energy of bodies, supports, modes and contact where the run stands (J).
+    ///
+    /// # Errors
+    /// Positions without static equilibrium.
+    pub fn stored_energy(&mut self) -> Result<f64, FecmError> {
+        self.stepper.whole_energy(&self.state)
     }
 
     /// The next steps; energies and counters go on from the start of the run. Fewer steps where cancelled.
@@ -446,20 +489,31 @@ impl Stepper<'_> {
         offset - self.closing_rotation(q) - lead + moved > -0.02 * offset.abs()
     }
 
+    /// Kinetic and elastic energy of bodies and modes (J).
+    fn body_energy(&self, state: &DynamicsState) -> f64 {
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        0.5 * dot(&state.velocity, &self.system.times_mass(&state.velocity))
+            + 0.5 * dot(&state.position, &self.system.times_stiffness(&state.position))
+    }
+
+    /// The same with the energy in the contact: cell forces are those that the positions imply.
+    fn whole_energy(&mut self, state: &DynamicsState) -> Result<f64, FecmError> {
+        let (rigid, bodies) = (self.system.rigid_count(), self.body_energy(state));
+        let place = self.schedule.place(self.operator_step(state.step), ENERGY_LEVEL, false);
+        let operator = self.schedule.operator(&place)?;
+        let (q, eta) = state.position.split_at(rigid);
+        Ok(bodies + operator.energy_at(q, eta, &self.matrix.modal, self.system)?)
+    }
+
     /// Adds a step to the energies. With average acceleration the balance closes to rounding.
     fn account(&self, energy: &mut EnergyBalance, from: &DynamicsState, to: &DynamicsState) {
         let time = |step: i64| step as f64 * self.weights.step;
         let moved: Vec<f64> = to.position.iter().zip(&from.position).map(|(b, a)| b - a).collect();
         let work = |a: &[f64], b: &[f64]| -> f64 { (0..moved.len()).map(|i| 0.5 * moved[i] * (a[i] + b[i])).sum() };
-        let stored = |state: &DynamicsState| -> f64 {
-            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-            0.5 * dot(&state.velocity, &self.system.times_mass(&state.velocity))
-                + 0.5 * dot(&state.position, &self.system.times_stiffness(&state.position))
-        };
         energy.external += work(&self.external(time(from.step)), &self.external(time(to.step)));
         energy.contact += work(&from.contact, &to.contact);
         energy.dissipated += work(&self.system.times_damping(&from.velocity), &self.system.times_damping(&to.velocity));
-        let (before, after) = (stored(from), stored(to));
+        let (before, after) = (self.body_energy(from), self.body_energy(to));
         energy.stored += after - before;
         let residual = energy.stored - (energy.external + energy.contact - energy.dissipated);
         energy.worst_residual = energy.worst_residual.max(residual.abs());
