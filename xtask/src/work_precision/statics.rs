@@ -143,11 +143,11 @@ fn solve(scene: &Scene, options: &PairModelOptions) -> anyhow::Result<(Curves, f
     let model = PairModel::new(&scene.pair, options)?;
     let mesh_cycles = (0..POSITIONS).map(|k| f64::from(k) / f64::from(POSITIONS)).collect();
     let request =
-        StaticsRequest { mesh_cycles, torques: vec![scene.torque], stiffness_difference: false, keep_pressure: false };
+        StaticsRequest { mesh_cycles, torques: vec![scene.torque], stiffness_difference: true, keep_pressure: false };
     let results = model.solve(&request, &())?.results.remove(0);
     let time = started.elapsed().as_secs_f64();
     let error = results.iter().map(|r| r.static_transmission_error).collect();
-    let stiffness = results.iter().map(|r| r.stiffness_local_slope.unwrap_or_default()).collect();
+    let stiffness = results.iter().map(|r| r.local_stiffness().unwrap_or_default()).collect();
     Ok(([error, stiffness], time))
 }
 

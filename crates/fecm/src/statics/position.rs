@@ -82,9 +82,6 @@ const MOST_UPDATES: usize = 24;
 const MOST_DEFLECTION: f64 = 0.25;
 /// Growth of cells that turn out too small: half an octave, so that positions share near fields.
 const CELL_STEP: f64 = std::f64::consts::SQRT_2;
-/// Relative change of torque for the local slope by differences.
-const TORQUE_STEP: f64 = 0.01;
-
 impl PairModel {
     /// Solves one position; returns also the start for the next.
     pub(super) fn solve_position(
@@ -215,7 +212,7 @@ impl PairModel {
         ContactGrid { pairs, cell, face: self.face.clone() }
     }
 
-    /// Local slope from torques 1 % above and below, same geometry.
+    /// Local slope from torques a little above and below, same geometry.
     fn difference_slope(
         &self,
         request: &PositionRequest<'_>,
@@ -225,9 +222,10 @@ impl PairModel {
         let Settled { grid, compliance, solution, .. } = settled;
         let (gaps, arms) = (grid.gaps(), grid.wheel_arms());
         let active: Vec<bool> = solution.forces.iter().map(|&f| f > 0.0).collect();
+        let step = self.options.contact.slope_step;
         let mut rotations = [0.0; 2];
         for (rotation, sign) in rotations.iter_mut().zip([-1.0, 1.0]) {
-            let load = request.torque * (1.0 + sign * TORQUE_STEP);
+            let load = request.torque * (1.0 + sign * step);
             let problem = ContactProblem { compliance: compliance.as_ref(), gap: &gaps, arm: &arms, load };
             let nearby = solve_contact(self.options.contact.solver, &problem, Some(&active))?;
             *stats = stats.followed_by(&nearby.stats);
@@ -235,7 +233,7 @@ impl PairModel {
         }
         let radius = self.pairing.base_radius(1);
         let opening = radius * radius * (rotations[1] - rotations[0]);
-        Ok((opening > 0.0).then(|| 2.0 * TORQUE_STEP * request.torque / opening))
+        Ok((opening > 0.0).then(|| 2.0 * step * request.torque / opening))
     }
 
     fn collect(

@@ -109,9 +109,11 @@ pub struct PositionResult {
     pub mesh_force: f64,
     /// Average-slope mesh stiffness (N/m); `None` without load.
     pub stiffness_average_slope: Option<f64>,
-    /// Local-slope mesh stiffness (N/m), exact tangent; `None` without contact.
+    /// Local-slope mesh stiffness (N/m), exact tangent of the cells in contact: a stair in the load, as cells join one by one; `None` without
+    /// contact.
     pub stiffness_local_slope: Option<f64>,
-    /// Local-slope mesh stiffness (N/m) by torques 1 % above and below; `None` without load.
+    /// Local-slope mesh stiffness (N/m) by torques above and below ([`super::ContactOptions::slope_step`]): the slope of the stair; `None` without
+    /// load, or where not asked for.
     pub stiffness_local_slope_difference: Option<f64>,
     /// Pairs in the contact problem, by number.
     pub pairs: Vec<PairState>,
@@ -122,6 +124,12 @@ pub struct PositionResult {
 }
 
 impl PositionResult {
+    /// The best local-slope mesh stiffness there is (N/m): by differences, else the tangent.
+    #[must_use]
+    pub fn local_stiffness(&self) -> Option<f64> {
+        self.stiffness_local_slope_difference.or(self.stiffness_local_slope)
+    }
+
     /// Pairs that carry load.
     pub fn loaded_pairs(&self) -> impl Iterator<Item = &PairState> {
         self.pairs.iter().filter(|pair| pair.force > 0.0)

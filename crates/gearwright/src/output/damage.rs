@@ -40,8 +40,7 @@ pub fn effect(label: &str, healthy: &[PositionResult], damaged: &[PositionResult
     let increase = |h: &PositionResult, d: &PositionResult| {
         (h.static_transmission_error > 0.0).then(|| d.static_transmission_error / h.static_transmission_error - 1.0)
     };
-    let decrease =
-        |h: &PositionResult, d: &PositionResult| Some(1.0 - d.stiffness_local_slope? / h.stiffness_local_slope?);
+    let decrease = |h: &PositionResult, d: &PositionResult| Some(1.0 - d.local_stiffness()? / h.local_stiffness()?);
     let ste = largest(&|_, d| Some(d.static_transmission_error * 1e6));
     let (ste_increase, stiffness_decrease) = (largest(&increase), largest(&decrease));
     let step = match healthy {

@@ -185,7 +185,7 @@ pub fn results(all: &[PositionResult], origin: f64) -> Results {
         ste_peak_to_peak_um: ste.max - ste.min,
         no_load_te_um: over(&|r| Some(r.no_load_transmission_error), 1e6),
         mesh_stiffness_average_n_per_um: over(&|r| r.stiffness_average_slope, 1e-6),
-        mesh_stiffness_local_n_per_um: over(&|r| r.stiffness_local_slope, 1e-6),
+        mesh_stiffness_local_n_per_um: over(&PositionResult::local_stiffness, 1e-6),
         largest_tooth_force_n: most(&|r| r.pairs.iter().map(|p| p.force).fold(0.0, f64::max)),
         largest_pressure_mpa: most(&|r| r.peak_pressure() * 1e-6),
         largest_torque_residual: most(&|r| r.stats.torque_residual),

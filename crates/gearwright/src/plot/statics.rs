@@ -43,13 +43,8 @@ pub fn transmission_error(title: &str, series: &[PositionResult], origin: f64) -
 /// Mesh stiffness by average and local slope.
 #[must_use]
 pub fn mesh_stiffness(title: &str, series: &[PositionResult], origin: f64) -> Chart {
-    let mut lines = vec![
-        line(
-            "local slope",
-            0,
-            Pattern::Solid,
-            over_cycle(series, origin, |r| r.stiffness_local_slope.map(|k| k * 1e-6)),
-        ),
+    let lines = vec![
+        line("local slope", 0, Pattern::Solid, over_cycle(series, origin, |r| r.local_stiffness().map(|k| k * 1e-6))),
         line(
             "average slope",
             1,
@@ -57,10 +52,6 @@ pub fn mesh_stiffness(title: &str, series: &[PositionResult], origin: f64) -> Ch
             over_cycle(series, origin, |r| r.stiffness_average_slope.map(|k| k * 1e-6)),
         ),
     ];
-    let differences = over_cycle(series, origin, |r| r.stiffness_local_slope_difference.map(|k| k * 1e-6));
-    if !differences.is_empty() {
-        lines.push(line("local, ±1 % torque", 2, Pattern::Dotted, differences));
-    }
     Chart {
         title: title.into(),
         x_label: CYCLE.into(),

@@ -143,7 +143,7 @@ fn write_damage(
             |chart: crate::plot::Chart, name: &str| chart.save(&file, name).map_err(|e| anyhow!("plot {name}: {e}"));
         let ste = |r: &PositionResult| Some(r.static_transmission_error * 1e6);
         save(figures::compared(title, "Transmission error (µm)", &named, origin, ste), "damage_transmission_error")?;
-        let stiffness = |r: &PositionResult| r.stiffness_local_slope.map(|k| k * 1e-6);
+        let stiffness = |r: &PositionResult| r.local_stiffness().map(|k| k * 1e-6);
         save(
             figures::compared(title, "Mesh stiffness, local slope (N/µm)", &named, origin, stiffness),
             "damage_mesh_stiffness",

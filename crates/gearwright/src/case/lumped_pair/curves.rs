@@ -61,7 +61,7 @@ impl Points {
         let mut points = Self::default();
         let mut unusable = 0;
         for result in results {
-            match result.stiffness_local_slope.filter(|_| result.status.is_usable()) {
+            match result.local_stiffness().filter(|_| result.status.is_usable()) {
                 Some(stiffness) => {
                     points.mesh_cycle.push(result.mesh_cycle + origin);
                     points.stiffness.push(stiffness);

@@ -291,6 +291,7 @@ fn options(inputs: &SpurPair, document: &Node, faults: &mut Vec<Fault>) -> PairM
             face_cells: numerics.face_cells as usize,
             matching_depth: numerics.matching_depth_modules,
             edge_correction: numerics.edge_correction,
+            slope_step: 0.01 * numerics.slope_step_percent,
             solver: match numerics.solver {
                 Solver::ActiveSet => SolverKind::ActiveSet,
                 Solver::Lemke => SolverKind::Lemke,

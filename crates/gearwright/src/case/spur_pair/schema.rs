@@ -279,7 +279,8 @@ pub struct Analysis {
     /// Mesh cycle at which tooth pair 0 touches at the pitch point.
     #[schemars(range(min = -100000.0, max = 100000.0))]
     pub mesh_cycle_origin: f64,
-    /// Also the local stiffness from torques 1 % above and below, beside the exact tangent.
+    /// Also the local stiffness from torques above and below (`slope_step_percent`), beside the exact tangent, which is a stair as cells join the
+    /// contact one by one.
     pub stiffness_by_differences: bool,
 }
 
@@ -488,6 +489,9 @@ pub struct Numerics {
     pub matching_depth_modules: f64,
     /// Correct the half-space at the free ends of the face by mirror loads (3d).
     pub edge_correction: bool,
+    /// Change of torque either way for the local stiffness by differences (percent). Small steps see the stair of single cells, 10 the slope.
+    #[schemars(range(min = 0.01, max = 30.0))]
+    pub slope_step_percent: f64,
     /// Contact solver: "active-set" (fast) or "lemke" (reference).
     pub solver: Solver,
 }
@@ -511,6 +515,7 @@ impl Numerics {
             cells_per_half_width: defaults.contact.cells_per_half_width,
             matching_depth_modules: defaults.contact.matching_depth,
             edge_correction: defaults.contact.edge_correction,
+            slope_step_percent: 100.0 * defaults.contact.slope_step,
             solver: Solver::ActiveSet,
         }
     }

@@ -134,7 +134,7 @@ fn solve(model: &PairModel, statics: &SpurPairCase, observer: &dyn RunObserver) 
     let request = StaticsRequest {
         mesh_cycles: statics.mesh_cycles.clone(),
         torques: vec![statics.inputs.load.torque_n_m],
-        stiffness_difference: false,
+        stiffness_difference: true,
         keep_pressure: false,
     };
     let solved = model.solve(&request, &AsObserver(observer)).context("the contact cannot be solved")?;
