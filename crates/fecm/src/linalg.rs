@@ -98,9 +98,11 @@ pub fn solve_general(a: &Mat<f64>, b: &Mat<f64>) -> Mat<f64> {
 /// # Errors
 /// [`FecmError::EigenNotConverged`] with `what`, also for entries that are not numbers.
 pub fn symmetric_eigen(a: &Mat<f64>, what: &'static str) -> Result<(Vec<f64>, Mat<f64>), FecmError> {
-    use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
+    use faer::linalg::evd::{ComputeEigenvectors, SelfAdjointEvdParams, self_adjoint_evd, self_adjoint_evd_scratch};
     let n = a.nrows();
-    let params = Default::default();
+    // QR iteration at any size: divide and conquer (faer 0.24.4, from 128 rows) was seen to leave residuals of 1e-5 of the largest
+    // eigenvalue where eigenvalues come in pairs, as those of a cyclic body do
+    let params = SelfAdjointEvdParams { recursion_threshold: usize::MAX, ..<_ as faer::Auto<f64>>::auto() }.into();
     let mut memory = MemBuffer::new(self_adjoint_evd_scratch::<f64>(n, ComputeEigenvectors::Yes, Par::Seq, params));
     let mut values = Diag::<f64>::zeros(n);
     let mut vectors = Mat::zeros(n, n);
