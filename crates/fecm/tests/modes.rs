@@ -37,7 +37,7 @@ fn body(gear: &Gear, face: FaceModel, bore: BoreCondition, mesh: MeshDensity) ->
 }
 
 fn all() -> ModesOptions {
-    ModesOptions { count: 100_000, sector_modes: Some(100_000) }
+    ModesOptions { count: 100_000, tolerance: 1e-12 }
 }
 
 /// All sectors as one mesh: nodes `(sector, node) -> number`, nodes on shared cuts merged.

@@ -6,7 +6,7 @@
 //!
 //! `s = (cos(phi) w_r, -sin(phi) w_t, cos(phi) w_z)`, `a = (sin(phi) w_r, cos(phi) w_t, sin(phi) w_z)`, `phi = h theta / 2`,
 //!
-//! and the problem is real and symmetric of one cut plus the sector's modes: the sum of an even and an odd half whose cut rows are
+//! and the problem is real and symmetric of one cut plus the sector's held fields: the sum of an even and an odd half whose cut rows are
 //! scaled by these factors. At `h = 0` and `h = N / 2` even and odd part into two problems.
 
 use faer::Mat;
@@ -14,7 +14,7 @@ use faer::Mat;
 use super::krylov::{Pencil, lowest};
 use super::sector::{HalfSector, Mirror};
 use crate::error::FecmError;
-use crate::linalg::{DenseCholesky, product};
+use crate::linalg::{DenseCholesky, add_block, product};
 
 /// Nodal diameter, and which mirror halves take part.
 #[derive(Debug, Clone)]
@@ -28,7 +28,7 @@ pub(super) struct Harmonic {
     rows: Vec<usize>,
 }
 
-/// Modes of one harmonic: the vectors of even and odd half (cut, then modes of the half), one mode a column, unit mass per sector.
+/// Modes of one harmonic: the vectors of even and odd half (cut, then held fields), one mode a column, unit mass per sector.
 pub(super) struct HarmonicModes {
     pub(super) harmonic: Harmonic,
     /// Squared frequencies, ascending (rad^2/s^2).
@@ -73,14 +73,15 @@ impl Harmonic {
         if self.only.is_some() { 1 } else { 2 }
     }
 
-    fn takes(&self, half: &HalfSector) -> bool {
+    /// Whether a half takes part.
+    pub(super) fn takes(&self, half: &HalfSector) -> bool {
         self.only.is_none_or(|only| only == half.mirror)
     }
 
     /// The lowest `count` modes, or all.
     pub(super) fn solve(&self, halves: &[HalfSector; 2], count: usize) -> Result<HarmonicModes, FecmError> {
         let cut = self.rows.len();
-        let held: usize = halves.iter().filter(|half| self.takes(half)).map(|half| half.values.len()).sum();
+        let held: usize = halves.iter().filter(|half| self.takes(half)).map(|half| half.held.ncols()).sum();
         let size = cut + held;
         let (mut stiffness, mut mass) = (Mat::zeros(size, size), Mat::zeros(size, size));
         let mut first = cut;
@@ -91,17 +92,17 @@ impl Harmonic {
                     stiffness[(i, j)] += factor * half.cut_stiffness[(row, column)];
                     mass[(i, j)] += factor * half.cut_mass[(row, column)];
                 }
-                for k in 0..half.values.len() {
+                for k in 0..half.held.ncols() {
                     let value = factors[column] * half.coupling[(column, k)];
                     mass[(j, first + k)] = value;
                     mass[(first + k, j)] = value;
                 }
             }
-            for (k, &value) in half.values.iter().enumerate() {
-                stiffness[(first + k, first + k)] = value;
+            for k in 0..half.held.ncols() {
                 mass[(first + k, first + k)] = 1.0;
             }
-            first += half.values.len();
+            add_block(&mut stiffness, first, first, 1.0, &half.held_stiffness);
+            first += half.held.ncols();
         }
         let pencil = DensePencil { factor: DenseCholesky::new(stiffness, "nodal diameter")?, mass };
         let found = lowest(&pencil, count, "nodal diameter")?;
@@ -115,11 +116,11 @@ impl Harmonic {
                     for (i, &row) in self.rows.iter().enumerate() {
                         part[(row, mode)] = factors[row] * found.vectors[(i, mode)];
                     }
-                    for k in 0..half.values.len() {
+                    for k in 0..half.held.ncols() {
                         part[(n + k, mode)] = found.vectors[(first + k, mode)];
                     }
                 }
-                first += half.values.len();
+                first += half.held.ncols();
             }
             part
         });

@@ -15,12 +15,10 @@ use crate::linalg::{product, symmetric_eigen, symmetrise};
 pub(super) trait Pencil {
     /// Number of unknowns.
     fn size(&self) -> usize;
-    /// `K^-1 f`; the result lies in the space that [`Self::restrict`] leaves unchanged.
+    /// `K^-1 f`.
     fn solve(&self, forces: Mat<f64>) -> Mat<f64>;
     /// `M u`.
     fn mass(&self, fields: &Mat<f64>) -> Mat<f64>;
-    /// Projects fields on the space of the problem.
-    fn restrict(&self, _fields: &mut Mat<f64>) {}
 }
 
 /// Eigenpairs, ascending.
@@ -58,15 +56,14 @@ pub(super) fn lowest(pencil: &impl Pencil, count: usize, what: &'static str) -> 
 /// Grows a Krylov space from a start until `count` pairs are found or the space is closed.
 fn expand(
     pencil: &impl Pencil,
-    mut start: Mat<f64>,
+    start: Mat<f64>,
     count: usize,
     what: &'static str,
 ) -> Result<Eigenpairs, FecmError> {
-    pencil.restrict(&mut start);
     let lengths = lengths(&start, &pencil.mass(&start));
     let mut basis = Mat::zeros(pencil.size(), 0);
     let mut momenta = Mat::zeros(pencil.size(), 0);
-    let mut block = orthonormal(pencil, start, &lengths, what)?;
+    let mut block = orthonormal(pencil, start, &lengths)?;
     let mut projected = Mat::<f64>::zeros(0, 0);
     let mut steps = 0;
     loop {
@@ -85,12 +82,12 @@ fn expand(
             coefficients += part;
         }
         let rest = next.clone();
-        let mut follower = orthonormal(pencil, next, &before, what)?;
+        let mut follower = orthonormal(pencil, next, &before)?;
         // once more against the basis: normalising enlarges what is left of it
         let part = product(momenta.transpose(), follower.as_ref());
         follower -= product(basis.as_ref(), part.as_ref());
         let unit = vec![1.0; follower.ncols()];
-        let follower = orthonormal(pencil, follower, &unit, what)?;
+        let follower = orthonormal(pencil, follower, &unit)?;
         projected.resize_with(total, total, |i, j| if j >= first { coefficients[(i, j - first)] } else { 0.0 });
         for j in first..total {
             for i in 0..first {
@@ -123,43 +120,45 @@ fn expand(
 }
 
 /// Orthonormal columns that span those of `fields`; directions that were `before` long and are now rounding are left out.
-fn orthonormal(
-    pencil: &impl Pencil,
-    mut fields: Mat<f64>,
-    before: &[f64],
-    what: &'static str,
-) -> Result<Mat<f64>, FecmError> {
+fn orthonormal(pencil: &impl Pencil, mut fields: Mat<f64>, before: &[f64]) -> Result<Mat<f64>, FecmError> {
     let mut least = before.iter().map(|length| LOST * length).collect::<Vec<_>>();
     for _ in 0..2 {
-        let moved = pencil.mass(&fields);
-        let norms = lengths(&fields, &moved);
-        let kept: Vec<usize> = (0..fields.ncols()).filter(|&k| norms[k] > least[k]).collect();
-        if kept.is_empty() {
-            return Ok(Mat::zeros(fields.nrows(), 0));
-        }
-        let scaled = |source: &Mat<f64>| {
-            Mat::from_fn(source.nrows(), kept.len(), |i, k| source[(i, kept[k])] / norms[kept[k]])
-        };
-        let (unit, moved) = (scaled(&fields), scaled(&moved));
-        let mut gram = product(unit.transpose(), moved.as_ref());
-        symmetrise(&mut gram);
-        let (values, vectors) = symmetric_eigen(&gram, what)?;
-        let strong: Vec<usize> = (0..values.len()).filter(|&k| values[k] > DEPENDENT).collect();
-        let mix =
-            Mat::from_fn(kept.len(), strong.len(), |i, k| vectors[(i, strong[k])] / values[strong[k]].max(0.0).sqrt());
-        fields = product(unit.as_ref(), mix.as_ref());
+        let mix = orthonormal_mix(&fields, &pencil.mass(&fields), &least)?;
+        fields = product(fields.as_ref(), mix.as_ref());
         least = vec![0.0; fields.ncols()];
     }
     Ok(fields)
 }
 
+/// What columns must be multiplied by to be orthonormal, given `M` times them; columns no longer than `least` and dependent directions are left
+/// out. Twice makes it exact to rounding.
+pub(super) fn orthonormal_mix(fields: &Mat<f64>, moved: &Mat<f64>, least: &[f64]) -> Result<Mat<f64>, FecmError> {
+    let norms = lengths(fields, moved);
+    let kept: Vec<usize> = (0..fields.ncols()).filter(|&k| norms[k] > least[k]).collect();
+    let gram = product(fields.transpose(), moved.as_ref());
+    let mut gram = Mat::from_fn(kept.len(), kept.len(), |i, j| {
+        gram[(kept[i], kept[j])] / (norms[kept[i]] * norms[kept[j]])
+    });
+    symmetrise(&mut gram);
+    let (values, vectors) = symmetric_eigen(&gram, "Gram")?;
+    let strong: Vec<usize> = (0..values.len()).filter(|&k| values[k] > DEPENDENT).collect();
+    let mut mix = Mat::zeros(fields.ncols(), strong.len());
+    for (k, &direction) in strong.iter().enumerate() {
+        for (i, &column) in kept.iter().enumerate() {
+            mix[(column, k)] = vectors[(i, direction)] / (norms[column] * values[direction].sqrt());
+        }
+    }
+    Ok(mix)
+}
+
 /// Lengths of columns, given `M` times them.
-fn lengths(fields: &Mat<f64>, moved: &Mat<f64>) -> Vec<f64> {
+pub(super) fn lengths(fields: &Mat<f64>, moved: &Mat<f64>) -> Vec<f64> {
     let square = |k: usize| -> f64 { fields.col_as_slice(k).iter().zip(moved.col_as_slice(k)).map(|(a, b)| a * b).sum() };
     (0..fields.ncols()).map(|k| square(k).max(0.0).sqrt()).collect()
 }
 
-fn append(all: &mut Mat<f64>, columns: &Mat<f64>) {
+/// Adds columns.
+pub(super) fn append(all: &mut Mat<f64>, columns: &Mat<f64>) {
     let (rows, first) = (all.nrows(), all.ncols());
     all.resize_with(rows, first + columns.ncols(), |i, j| columns[(i, j - first)]);
 }

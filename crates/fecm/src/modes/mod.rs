@@ -10,7 +10,7 @@
 //! A gear with cracks takes the modes of the healthy gear and its own compliance: cracks change stiffness at a tooth's root, which is
 //! static, and next to no mass.
 //!
-//! The gear is a ring of `N` equal sectors, so its modes follow from one sector: [`sector`] reduces it to its cuts and a few modes,
+//! The gear is a ring of `N` equal sectors, so its modes follow from one sector: [`sector`] reduces it to its cuts and a few fields,
 //! [`harmonic`] couples the cuts for each nodal diameter `h`, [`krylov`] finds the lowest eigenpairs. Modes of `0 < h < N / 2` come in
 //! pairs, and the rule that fixes them is the mirror about the centre line of tooth 0: [`Twin::Even`] equals its image, [`Twin::Odd`]
 //! is opposite to it. Signs make the largest component positive. A pair is never split: one mode more than asked may be returned.
@@ -33,24 +33,23 @@ use crate::error::FecmError;
 use crate::face::FaceBasis;
 use crate::linalg::product;
 use harmonic::HarmonicModes;
-use ring::{FamilyRing, default_sector_modes};
+use ring::FamilyRing;
 use sector::SectorLayout;
 
 /// How many modes, and how well.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ModesOptions {
     /// Number of modes of the gear, lowest first; 0 costs nothing.
     pub count: usize,
-    /// Modes of the sector with its cuts held, of each mirror half and symmetry family, that the gear's modes are made of; `None`
-    /// takes enough for frequencies good to about 1e-5.
-    pub sector_modes: Option<usize>,
+    /// Largest last correction of a frequency, relative to it, 1e-12 to 0.1. What is left is far smaller.
+    pub tolerance: f64,
 }
 
 impl ModesOptions {
-    /// `count` modes with the default reduction.
+    /// `count` modes with the default tolerance, 1e-3.
     #[must_use]
     pub fn new(count: usize) -> Self {
-        Self { count, sector_modes: None }
+        Self { count, tolerance: 1e-3 }
     }
 }
 
@@ -103,7 +102,7 @@ struct FamilyShapes {
     flank: [Mat<f64>; 2],
     /// Cuts (lower, upper; local axes) by shape.
     cuts: [Mat<f64>; 2],
-    /// Amplitudes of the sector's modes by shape, and these modes as node fields.
+    /// Amplitudes of the sector's held fields by shape, and these node fields.
     held: [(Mat<f64>, Mat<f64>); 2],
 }
 
@@ -133,21 +132,24 @@ impl GearModes {
     /// # Errors
     /// Failed factorisations and eigenvalue iterations; [`FecmError::Option`] for a bore under tractions, which leaves the body free.
     pub fn new(body: &GearBody, options: &ModesOptions) -> Result<Self, FecmError> {
+        if !(1e-12..=0.1).contains(&options.tolerance) {
+            let (name, value) = ("tolerance of frequencies", options.tolerance);
+            return Err(FecmError::Option { name, value, allowed: "1e-12 to 0.1" });
+        }
         let sector = Arc::clone(body.healthy_sector());
         let teeth = body.teeth() as u32;
         let mut modes = Self { modes: Vec::new(), families: Vec::new(), teeth: body.teeth(), side: body.side, sector };
         if options.count == 0 {
             return Ok(modes);
         }
-        let held = options.sector_modes.unwrap_or_else(|| default_sector_modes(options.count, teeth));
         let sector = Arc::clone(&modes.sector);
         let rings = body.families.iter().enumerate().map(|(family, own)| {
             let condensed = &sector.families[family].condensed;
             let layout = SectorLayout { shape: &sector.shape, basis: &own.basis, condensed };
-            FamilyRing::new(layout, body.material.density, teeth, held)
+            FamilyRing::new(layout, body.material.density, teeth)
         });
-        let rings = rings.collect::<Result<Vec<_>, _>>()?;
-        let solved = ring::lowest_of_rings(&rings, options.count)?;
+        let mut rings = rings.collect::<Result<Vec<_>, _>>()?;
+        let solved = ring::lowest_of_rings(&mut rings, options.count, options.tolerance)?;
         for (family, (ring, solved)) in rings.into_iter().zip(solved).enumerate() {
             modes.add_family(family, ring, &solved);
         }
@@ -159,13 +161,14 @@ impl GearModes {
         let first = self.modes.len();
         let shapes: usize = solved.iter().map(|modes| modes.values.len()).sum();
         let mut halves = [0, 1].map(|half: usize| Mat::<f64>::zeros(ring.halves[half].size(), shapes));
+        let rigid = ring.rigid();
         let mut shape = 0;
         for modes in solved {
             for (k, value) in modes.values.iter().enumerate() {
                 for (all, own) in halves.iter_mut().zip(&modes.halves) {
                     all.col_as_slice_mut(shape).copy_from_slice(own.col_as_slice(k));
                 }
-                self.modes.extend(ring.modes_of_shape(&modes.harmonic, &halves, shape).map(|mode| Mode {
+                self.modes.extend(ring.modes_of_shape(&modes.harmonic, &halves, shape, &rigid).map(|mode| Mode {
                     family,
                     angular_frequency: value.sqrt(),
                     ..mode

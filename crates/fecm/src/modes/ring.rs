@@ -7,6 +7,7 @@ use faer::Mat;
 use rayon::prelude::*;
 
 use super::harmonic::{Harmonic, HarmonicModes};
+use super::krylov::append;
 use super::sector::{HalfSector, Mirror, SectorLayout, SectorSpace};
 use super::{FamilyShapes, Mode, Twin};
 use crate::body::ToothSector;
@@ -15,29 +16,41 @@ use crate::linalg::product;
 
 /// The reduced sector of one family and the harmonics of its ring.
 pub(super) struct FamilyRing<'a> {
-    layout: SectorLayout<'a>,
+    space: SectorSpace<'a>,
     teeth: u32,
     pub(super) halves: [HalfSector; 2],
     harmonics: Vec<Harmonic>,
 }
 
-/// Sector modes of one mirror half that make the lowest `count` modes of a gear of `teeth` teeth good to about 1e-5.
-pub(super) fn default_sector_modes(count: usize, teeth: u32) -> usize {
-    12 + 4 * count.div_ceil(teeth as usize)
-}
-
 impl<'a> FamilyRing<'a> {
-    /// Reduces the sector to its cuts and `held` modes of each mirror half.
-    pub(super) fn new(layout: SectorLayout<'a>, density: f64, teeth: u32, held: usize) -> Result<Self, FecmError> {
+    /// Reduces the sector to its cuts.
+    pub(super) fn new(layout: SectorLayout<'a>, density: f64, teeth: u32) -> Result<Self, FecmError> {
         let space = SectorSpace::new(layout, density)?;
-        let reduce = |mirror| HalfSector::new(&space, mirror, held);
+        let reduce = |mirror| HalfSector::new(&space, mirror);
         let (even, odd) = rayon::join(|| reduce(Mirror::Even), || reduce(Mirror::Odd));
-        Ok(Self { layout, teeth, halves: [even?, odd?], harmonics: Harmonic::of_ring(teeth, &layout.cut_components()) })
+        let harmonics = Harmonic::of_ring(teeth, &layout.cut_components());
+        Ok(Self { space, teeth, halves: [even, odd], harmonics })
     }
 
     fn solve(&self, counts: &[usize]) -> Result<Vec<HarmonicModes>, FecmError> {
         let tasks: Vec<_> = self.harmonics.iter().zip(counts).collect();
         tasks.into_par_iter().map(|(harmonic, &count)| harmonic.solve(&self.halves, count)).collect()
+    }
+
+    /// Gives the sector what the inertia of these modes asks for. Returns whether there was anything new.
+    fn enrich(&mut self, modes: &[HarmonicModes]) -> Result<bool, FecmError> {
+        let space = &self.space;
+        let of_half = |half: usize| {
+            let mut motions = Mat::zeros(self.halves[half].size(), 0);
+            for modes in modes.iter().filter(|modes| modes.harmonic.takes(&self.halves[half])) {
+                append(&mut motions, &modes.halves[half]);
+            }
+            motions
+        };
+        let motions = [of_half(0), of_half(1)];
+        let [even, odd] = &mut self.halves;
+        let (even, odd) = rayon::join(|| even.enrich(space, &motions[0]), || odd.enrich(space, &motions[1]));
+        Ok(even? + odd? > 0)
     }
 
     /// The one or two modes of a shape, but for family and frequency.
@@ -46,6 +59,7 @@ impl<'a> FamilyRing<'a> {
         harmonic: &Harmonic,
         halves: &[Mat<f64>; 2],
         shape: usize,
+        rigid: &[[Vec<f64>; 6]; 2],
     ) -> impl Iterator<Item = Mode> + use<> {
         let twins: &'static [Twin] = match harmonic.only {
             None => &[Twin::Even, Twin::Odd],
@@ -55,7 +69,7 @@ impl<'a> FamilyRing<'a> {
         // the sum of cos^2 over all teeth is N / 2, or N where the cosine is +-1
         let teeth = f64::from(self.teeth);
         let scale = if harmonic.only.is_some() { 1.0 / teeth.sqrt() } else { (2.0 / teeth).sqrt() };
-        let momentum = self.momentum(halves, shape);
+        let momentum = momentum(halves, shape, rigid);
         let nodal_diameter = harmonic.nodal_diameter;
         twins.iter().map(move |&twin| Mode {
             family: 0,
@@ -68,16 +82,9 @@ impl<'a> FamilyRing<'a> {
         })
     }
 
-    /// `s^T M r` and `a^T M r` of a shape with the rigid motions, in their even or odd half.
-    fn momentum(&self, halves: &[Mat<f64>; 2], shape: usize) -> [f64; 6] {
-        let mut result = [0.0; 6];
-        for (half, coordinates) in self.halves.iter().zip(halves) {
-            for (sum, (_, momentum)) in result.iter_mut().zip(&half.rigid) {
-                let pairs = momentum.col_as_slice(0).iter().zip(coordinates.col_as_slice(shape));
-                *sum += pairs.map(|(a, b)| a * b).sum::<f64>();
-            }
-        }
-        result
+    /// `M r` of the rigid motions on both halves.
+    pub(super) fn rigid(&self) -> [[Vec<f64>; 6]; 2] {
+        [0, 1].map(|half| self.halves[half].rigid(&self.space))
     }
 
     /// What is kept of the family's shapes.
@@ -91,10 +98,10 @@ impl<'a> FamilyRing<'a> {
         let cuts = [0, 1].map(|index| {
             let half = &self.halves[index];
             let cut = halves[index].as_ref().subrows(0, half.cut_stiffness.nrows());
-            product(self.layout.cuts_of_upper(half.mirror).as_ref(), cut)
+            product(self.space.layout.cuts_of_upper(half.mirror).as_ref(), cut)
         });
-        let block = self.layout.basis.block();
-        let functions = 2 * self.layout.basis.plane_degrees().len();
+        let block = self.space.layout.basis.block();
+        let functions = 2 * self.space.layout.basis.plane_degrees().len();
         let flank_rows: Vec<usize> = sector
             .flank_nodes()
             .iter()
@@ -104,19 +111,30 @@ impl<'a> FamilyRing<'a> {
             let half = &self.halves[index];
             let mut flank = product(sector.families[family].at_flank.as_ref(), cuts[index].as_ref());
             flank *= faer::Scale(-1.0);
-            let modes = Mat::from_fn(flank_rows.len(), half.values.len(), |i, k| half.modes[(flank_rows[i], k)]);
-            let held = halves[index].as_ref().subrows(half.cut_stiffness.nrows(), half.values.len());
-            flank += product(modes.as_ref(), held);
+            let fields = Mat::from_fn(flank_rows.len(), half.held.ncols(), |i, k| half.held[(flank_rows[i], k)]);
+            let held = halves[index].as_ref().subrows(half.cut_stiffness.nrows(), half.held.ncols());
+            flank += product(fields.as_ref(), held);
             flank
         });
         let [even, odd] = self.halves;
         let held = |half: HalfSector, coordinates: &Mat<f64>| {
             let rows = half.cut_stiffness.nrows();
-            (coordinates.as_ref().subrows(rows, half.values.len()).to_owned(), half.modes)
+            (coordinates.as_ref().subrows(rows, half.held.ncols()).to_owned(), half.held)
         };
         let held = [held(even, &halves[0]), held(odd, &halves[1])];
-        FamilyShapes { range, basis: self.layout.basis.clone(), flank, cuts, held }
+        FamilyShapes { range, basis: self.space.layout.basis.clone(), flank, cuts, held }
     }
+}
+
+/// `s^T M r` and `a^T M r` of a shape with the rigid motions, in their even or odd half.
+fn momentum(halves: &[Mat<f64>; 2], shape: usize, rigid: &[[Vec<f64>; 6]; 2]) -> [f64; 6] {
+    let mut result = [0.0; 6];
+    for (rigid, coordinates) in rigid.iter().zip(halves) {
+        for (sum, momentum) in result.iter_mut().zip(rigid) {
+            *sum += momentum.iter().zip(coordinates.col_as_slice(shape)).map(|(a, b)| a * b).sum::<f64>();
+        }
+    }
+    result
 }
 
 /// Sum over the gear of a mode's momentum in the rigid motions. In the frame of a tooth at angle `p`, motion along x is the even field
@@ -134,24 +152,60 @@ fn rigid_coupling(nodal_diameter: u32, twin: Twin, root: f64, momentum: &[f64; 6
     }
 }
 
-/// The lowest modes of all families and harmonics: `count` in all, pairs whole. By family, then harmonic.
-pub(super) fn lowest_of_rings(rings: &[FamilyRing<'_>], count: usize) -> Result<Vec<Vec<HarmonicModes>>, FecmError> {
-    let harmonics = |ring: &FamilyRing<'_>| ring.harmonics.len();
+/// The lowest modes of all families and harmonics, `count` in all, pairs whole: by family, then harmonic. Sectors are enriched until no frequency
+/// moves by more than `tolerance` of itself.
+pub(super) fn lowest_of_rings(
+    rings: &mut [FamilyRing<'_>],
+    count: usize,
+    tolerance: f64,
+) -> Result<Vec<Vec<HarmonicModes>>, FecmError> {
     let teeth = rings.first().map_or(1, |ring| ring.teeth as usize);
     let mut counts: Vec<Vec<usize>> =
-        rings.iter().map(|ring| vec![count.div_ceil(teeth) + 2; harmonics(ring)]).collect();
+        rings.iter().map(|ring| vec![count.div_ceil(teeth) + 2; ring.harmonics.len()]).collect();
+    let mut solved = select(rings, count, &mut counts)?;
+    loop {
+        let before = frequencies(&solved);
+        let mut new = false;
+        for (ring, modes) in rings.iter_mut().zip(&solved) {
+            new |= ring.enrich(modes)?;
+        }
+        if !new {
+            return Ok(solved);
+        }
+        solved = select(rings, count, &mut counts)?;
+        let after = frequencies(&solved);
+        // enriched, a frequency can only fall
+        let settled = before.len() == after.len() && before.iter().zip(&after).all(|(b, a)| b - a <= tolerance * a);
+        if settled {
+            return Ok(solved);
+        }
+    }
+}
+
+/// All frequencies, ascending (rad/s).
+fn frequencies(solved: &[Vec<HarmonicModes>]) -> Vec<f64> {
+    let all = solved.iter().flatten();
+    let mut values: Vec<f64> = all
+        .flat_map(|modes| modes.values.iter().flat_map(|&value| vec![value.sqrt(); modes.harmonic.multiplicity()]))
+        .collect();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+/// The lowest modes with the sectors as they are. `counts` of each harmonic grow until none can be missing.
+fn select(
+    rings: &[FamilyRing<'_>],
+    count: usize,
+    counts: &mut [Vec<usize>],
+) -> Result<Vec<Vec<HarmonicModes>>, FecmError> {
     loop {
         let mut solved = Vec::new();
-        for (ring, counts) in rings.iter().zip(&counts) {
+        for (ring, counts) in rings.iter().zip(&*counts) {
             solved.push(ring.solve(counts)?);
         }
-        let mut values: Vec<f64> = solved
-            .iter()
-            .flatten()
-            .flat_map(|modes| modes.values.iter().flat_map(|&value| vec![value; modes.harmonic.multiplicity()]))
-            .collect();
-        values.sort_by(f64::total_cmp);
-        let last = values.get(count - 1).copied().unwrap_or(f64::INFINITY);
+        let last = frequencies(&solved).get(count - 1).map_or(f64::INFINITY, |frequency| frequency * frequency);
+        // the root squared may fall below the value itself
+        let last = last * (1.0 + 4.0 * f64::EPSILON);
         // a harmonic whose modes all lie below may have more
         let mut complete = true;
         for (modes, count) in solved.iter().flatten().zip(counts.iter_mut().flatten()) {
