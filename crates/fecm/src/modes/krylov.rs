@@ -33,10 +33,9 @@ pub(super) struct Eigenpairs {
 const BLOCK: usize = 5;
 /// Residual of an accepted Ritz pair, relative to its Ritz value: the eigenvalue is then good to the square of it over the gap.
 const RESIDUAL: f64 = 1e-8;
-/// A new direction shorter than this part of what it was before orthogonalisation is rounding.
-const LOST: f64 = 1e-10;
-/// Eigenvalue of a Gram matrix of unit columns below which its direction depends on the others.
-const DEPENDENT: f64 = 1e-12;
+/// Part of its length that a field must keep after what is known of it is taken away, to count as new. Eigenvalues feel what is
+/// left out by its square; what little is left of longer differences is rounding.
+const NEW: f64 = 1e-6;
 
 /// The lowest `count` eigenpairs, or all if there are fewer.
 pub(super) fn lowest(pencil: &impl Pencil, count: usize, what: &'static str) -> Result<Eigenpairs, FecmError> {
@@ -119,36 +118,25 @@ fn expand(
     }
 }
 
-/// Orthonormal columns that span those of `fields`; directions that were `before` long and are now rounding are left out.
-fn orthonormal(pencil: &impl Pencil, mut fields: Mat<f64>, before: &[f64]) -> Result<Mat<f64>, FecmError> {
-    let mut least = before.iter().map(|length| LOST * length).collect::<Vec<_>>();
-    for _ in 0..2 {
-        let mix = orthonormal_mix(&fields, &pencil.mass(&fields), &least)?;
-        fields = product(fields.as_ref(), mix.as_ref());
-        least = vec![0.0; fields.ncols()];
-    }
-    Ok(fields)
+/// Orthonormal columns that span those of `fields`, but for what is short against the lengths `before`.
+fn orthonormal(pencil: &impl Pencil, fields: Mat<f64>, before: &[f64]) -> Result<Mat<f64>, FecmError> {
+    let mix = orthonormal_mix(&fields, &pencil.mass(&fields), before)?;
+    let fields = product(fields.as_ref(), mix.as_ref());
+    let mix = orthonormal_mix(&fields, &pencil.mass(&fields), &vec![1.0; fields.ncols()])?;
+    Ok(product(fields.as_ref(), mix.as_ref()))
 }
 
-/// What columns must be multiplied by to be orthonormal, given `M` times them; columns no longer than `least` and dependent directions are left
-/// out. Twice makes it exact to rounding.
-pub(super) fn orthonormal_mix(fields: &Mat<f64>, moved: &Mat<f64>, least: &[f64]) -> Result<Mat<f64>, FecmError> {
-    let norms = lengths(fields, moved);
-    let kept: Vec<usize> = (0..fields.ncols()).filter(|&k| norms[k] > least[k]).collect();
+/// What columns must be multiplied by to be orthonormal, given `M` times them; directions short against the lengths `before` are left out.
+/// Twice makes it exact to rounding.
+pub(super) fn orthonormal_mix(fields: &Mat<f64>, moved: &Mat<f64>, before: &[f64]) -> Result<Mat<f64>, FecmError> {
+    let n = fields.ncols();
+    let scales: Vec<f64> = before.iter().map(|&length| if length > 0.0 { 1.0 / length } else { 0.0 }).collect();
     let gram = product(fields.transpose(), moved.as_ref());
-    let mut gram = Mat::from_fn(kept.len(), kept.len(), |i, j| {
-        gram[(kept[i], kept[j])] / (norms[kept[i]] * norms[kept[j]])
-    });
+    let mut gram = Mat::from_fn(n, n, |i, j| gram[(i, j)] * scales[i] * scales[j]);
     symmetrise(&mut gram);
     let (values, vectors) = symmetric_eigen(&gram, "Gram")?;
-    let strong: Vec<usize> = (0..values.len()).filter(|&k| values[k] > DEPENDENT).collect();
-    let mut mix = Mat::zeros(fields.ncols(), strong.len());
-    for (k, &direction) in strong.iter().enumerate() {
-        for (i, &column) in kept.iter().enumerate() {
-            mix[(column, k)] = vectors[(i, direction)] / (norms[column] * values[direction].sqrt());
-        }
-    }
-    Ok(mix)
+    let new: Vec<usize> = (0..n).filter(|&k| values[k] > NEW * NEW).collect();
+    Ok(Mat::from_fn(n, new.len(), |i, k| vectors[(i, new[k])] * scales[i] / values[new[k]].sqrt()))
 }
 
 /// Lengths of columns, given `M` times them.

@@ -247,15 +247,15 @@ impl HalfSector {
         layout.condensed.solve_interior(&mut interior);
         let mut fields = layout.expand(&interior);
         space.keep(self.mirror, &mut fields);
-        let mut least: Vec<f64> = lengths(&fields, &space.mass.apply(&fields)).iter().map(|l| l * KNOWN).collect();
+        let mut before = lengths(&fields, &space.mass.apply(&fields));
         for _ in 0..3 {
             let part = product(self.momenta.transpose(), fields.as_ref());
             fields -= product(self.held.as_ref(), part.as_ref());
             forces -= product(self.forces.as_ref(), part.as_ref());
-            let mix = orthonormal_mix(&fields, &space.mass.apply(&fields), &least)?;
+            let mix = orthonormal_mix(&fields, &space.mass.apply(&fields), &before)?;
             fields = product(fields.as_ref(), mix.as_ref());
             forces = product(forces.as_ref(), mix.as_ref());
-            least = vec![0.0; fields.ncols()];
+            before = vec![1.0; fields.ncols()];
         }
         let momenta = space.mass.apply(&fields);
         append(&mut self.coupling, &product(self.cut_momenta.transpose(), fields.as_ref()));
@@ -283,9 +283,6 @@ impl HalfSector {
         self.cut_stiffness.nrows() + self.held.ncols()
     }
 }
-
-/// A field whose part outside the held ones is shorter than this part of it adds nothing.
-const KNOWN: f64 = 1e-8;
 
 /// Node at the mirror image `(x, -y)` of each node.
 fn mirror_images(nodes: &[Point2<f64>]) -> Result<Vec<usize>, FecmError> {
