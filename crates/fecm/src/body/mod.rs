@@ -247,6 +247,11 @@ impl GearBody {
         &self.healthy
     }
 
+    /// Whether no hub holds the bore.
+    pub(crate) fn is_free(&self) -> bool {
+        self.hub.soft.is_some()
+    }
+
     /// Mass and moments of inertia of the healthy gear, from its mesh.
     #[must_use]
     pub fn inertia(&self) -> BodyInertia {
