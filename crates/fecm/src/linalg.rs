@@ -8,6 +8,7 @@
 //!   node graph, which is `block` times smaller than the matrix.
 //! * Dense helpers: products, Cholesky solves, symmetrisation.
 
+use faer::diag::Diag;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::matmul::matmul;
 use faer::perm::PermRef;
@@ -16,7 +17,6 @@ use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::diag::Diag;
 use faer::{Accum, Conj, Mat, MatMut, MatRef, Par, Side};
 
 use crate::error::FecmError;

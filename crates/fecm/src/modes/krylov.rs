@@ -53,12 +53,7 @@ pub(super) fn lowest(pencil: &impl Pencil, count: usize, what: &'static str) -> 
 }
 
 /// Grows a Krylov space from a start until `count` pairs are found or the space is closed.
-fn expand(
-    pencil: &impl Pencil,
-    start: Mat<f64>,
-    count: usize,
-    what: &'static str,
-) -> Result<Eigenpairs, FecmError> {
+fn expand(pencil: &impl Pencil, start: Mat<f64>, count: usize, what: &'static str) -> Result<Eigenpairs, FecmError> {
     let lengths = lengths(&start, &pencil.mass(&start));
     let mut basis = Mat::zeros(pencil.size(), 0);
     let mut momenta = Mat::zeros(pencil.size(), 0);
@@ -104,8 +99,7 @@ fn expand(
             let residual = product(pencil.mass(&follower).transpose(), rest.as_ref());
             let tail = vectors.as_ref().submatrix(first, total - wanted, total - first, wanted);
             let residual = product(residual.as_ref(), tail);
-            let settled =
-                (0..wanted).all(|k| residual.col(k).norm_l2() <= RESIDUAL * values[total - wanted + k].abs());
+            let settled = (0..wanted).all(|k| residual.col(k).norm_l2() <= RESIDUAL * values[total - wanted + k].abs());
             if closed || settled {
                 let chosen = Mat::from_fn(total, wanted, |i, k| vectors[(i, total - 1 - k)]);
                 return Ok(Eigenpairs {
@@ -141,7 +135,8 @@ pub(super) fn orthonormal_mix(fields: &Mat<f64>, moved: &Mat<f64>, before: &[f64
 
 /// Lengths of columns, given `M` times them.
 pub(super) fn lengths(fields: &Mat<f64>, moved: &Mat<f64>) -> Vec<f64> {
-    let square = |k: usize| -> f64 { fields.col_as_slice(k).iter().zip(moved.col_as_slice(k)).map(|(a, b)| a * b).sum() };
+    let square =
+        |k: usize| -> f64 { fields.col_as_slice(k).iter().zip(moved.col_as_slice(k)).map(|(a, b)| a * b).sum() };
     (0..fields.ncols()).map(|k| square(k).max(0.0).sqrt()).collect()
 }
 

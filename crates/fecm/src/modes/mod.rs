@@ -108,11 +108,7 @@ struct FamilyShapes {
 
 impl FamilyShapes {
     fn layout<'a>(&'a self, sector: &'a ToothSector, family: usize) -> SectorLayout<'a> {
-        SectorLayout {
-            shape: &sector.shape,
-            basis: &self.basis,
-            condensed: &sector.families[family].condensed,
-        }
+        SectorLayout { shape: &sector.shape, basis: &self.basis, condensed: &sector.families[family].condensed }
     }
 }
 
@@ -218,8 +214,8 @@ impl GearModes {
         for (row, mode) in modes.iter().enumerate() {
             let [even, odd] = mode.factors(self.angle(mode, tooth));
             for k in 0..functions {
-                result[(row, k)] = even * at(&shapes.flank[0], mode.shape, k)
-                    + odd_sign * odd * at(&shapes.flank[1], mode.shape, k);
+                result[(row, k)] =
+                    even * at(&shapes.flank[0], mode.shape, k) + odd_sign * odd * at(&shapes.flank[1], mode.shape, k);
             }
         }
         result

@@ -37,13 +37,21 @@ impl<'a> FamilyRing<'a> {
         tasks.into_par_iter().map(|(harmonic, &count)| harmonic.solve(&self.halves, count)).collect()
     }
 
-    /// Gives the sector what the inertia of these modes asks for. Returns whether there was anything new.
-    fn enrich(&mut self, modes: &[HarmonicModes]) -> Result<bool, FecmError> {
+    /// Gives the sector what the inertia of those modes asks for that still moved by more than `tolerance` of their frequency since `before`
+    /// (squared frequencies by harmonic). Returns whether there was anything new.
+    fn enrich(&mut self, modes: &[HarmonicModes], before: &[Vec<f64>], tolerance: f64) -> Result<bool, FecmError> {
         let space = &self.space;
         let of_half = |half: usize| {
             let mut motions = Mat::zeros(self.halves[half].size(), 0);
-            for modes in modes.iter().filter(|modes| modes.harmonic.takes(&self.halves[half])) {
-                append(&mut motions, &modes.halves[half]);
+            let taking = modes.iter().enumerate().filter(|(_, own)| own.harmonic.takes(&self.halves[half]));
+            for (index, own) in taking {
+                let known = before.get(index).map_or(&[][..], Vec::as_slice);
+                for (k, value) in own.values.iter().enumerate() {
+                    let settled = known.get(k).is_some_and(|known| (known / value).sqrt() - 1.0 <= tolerance);
+                    if !settled {
+                        append(&mut motions, &own.halves[half].as_ref().subcols(k, 1).to_owned());
+                    }
+                }
             }
             motions
         };
@@ -153,7 +161,7 @@ fn rigid_coupling(nodal_diameter: u32, twin: Twin, root: f64, momentum: &[f64; 6
 }
 
 /// The lowest modes of all families and harmonics, `count` in all, pairs whole: by family, then harmonic. Sectors are enriched until no frequency
-/// moves by more than `tolerance` of itself.
+/// falls by more than `tolerance` of itself.
 pub(super) fn lowest_of_rings(
     rings: &mut [FamilyRing<'_>],
     count: usize,
@@ -162,21 +170,15 @@ pub(super) fn lowest_of_rings(
     let teeth = rings.first().map_or(1, |ring| ring.teeth as usize);
     let mut counts: Vec<Vec<usize>> =
         rings.iter().map(|ring| vec![count.div_ceil(teeth) + 2; ring.harmonics.len()]).collect();
-    let mut solved = select(rings, count, &mut counts)?;
+    let mut before = vec![Vec::new(); rings.len()];
     loop {
-        let before = frequencies(&solved);
+        let solved = select(rings, count, &mut counts)?;
         let mut new = false;
-        for (ring, modes) in rings.iter_mut().zip(&solved) {
-            new |= ring.enrich(modes)?;
+        for ((ring, modes), before) in rings.iter_mut().zip(&solved).zip(&mut before) {
+            new |= ring.enrich(modes, before, tolerance)?;
+            *before = modes.iter().map(|modes| modes.values.clone()).collect();
         }
         if !new {
-            return Ok(solved);
-        }
-        solved = select(rings, count, &mut counts)?;
-        let after = frequencies(&solved);
-        // enriched, a frequency can only fall
-        let settled = before.len() == after.len() && before.iter().zip(&after).all(|(b, a)| b - a <= tolerance * a);
-        if settled {
             return Ok(solved);
         }
     }

@@ -171,7 +171,8 @@ impl<'a> SectorSpace<'a> {
     /// Keeps one mirror half of node fields.
     fn keep(&self, mirror: Mirror, fields: &mut Mat<f64>) {
         let block = self.layout.basis.block();
-        let flips: Vec<f64> = self.layout.basis.dofs().iter().map(|dof| if dof.component == 1 { -1.0 } else { 1.0 }).collect();
+        let flips: Vec<f64> =
+            self.layout.basis.dofs().iter().map(|dof| if dof.component == 1 { -1.0 } else { 1.0 }).collect();
         for column in 0..fields.ncols() {
             let values = fields.col_as_slice_mut(column);
             for (node, &image) in self.images.iter().enumerate().filter(|&(node, &image)| image >= node) {
@@ -237,6 +238,9 @@ impl HalfSector {
     /// Adds what the inertia of given motions (cut, then held fields; one a column) does inside the sector: `K_II^-1 (M u)_I`, as far as the
     /// held fields do not have it. Returns how many fields were new.
     pub(super) fn enrich(&mut self, space: &SectorSpace<'_>, motions: &Mat<f64>) -> Result<usize, FecmError> {
+        if motions.ncols() == 0 {
+            return Ok(0);
+        }
         let layout = &space.layout;
         let cut = self.cut_mass.nrows();
         let mut inertia = product(self.cut_momenta.as_ref(), motions.as_ref().subrows(0, cut));
