@@ -11,7 +11,7 @@ use fecm::mass::{BodyMass, RigidMotion};
 use fecm::mesh::{FlankEdge, MeshDensity, PlaneMesh, SectorMesh};
 use fecm::modes::Twin;
 use fecm::{BodyInertia, FaceModel, FecmError, GearModes, Material, ModesOptions};
-use gear_geom::{FlankSide, Gear, GearSpec};
+use gear_geom::{FilletSpec, FlankSide, Gear, GearSpec, ToothThickness};
 use nalgebra::{Point2, Rotation2};
 
 mod common;
@@ -495,4 +495,28 @@ fn extreme_requests_are_refused() {
         let error = GearModes::new(&held, &ModesOptions { count: 3, tolerance });
         assert!(matches!(error, Err(FecmError::Option { .. })), "{tolerance}");
     }
+}
+
+/// The pinion of the dissertation's nonunity pair (Tables 3.1 and 3.2): 0.7294 kg and 0.0008 kg m^2. Its bore is not printed; 50.8 mm is
+/// the case file's. (Of the gear the table prints 0.8537 kg and 0.0050 kg m^2, which no body within its tip radius of 52.49 mm has:
+/// `m r_a^2` is 0.0024 kg m^2.)
+#[test]
+fn peer_dissertation_table_3_2_pinion() {
+    let pinion = Gear::new(&GearSpec {
+        teeth: 27,
+        module: 2.0 * 88.9e-3 / 62.0,
+        pressure_angle: 24.6_f64.to_radians(),
+        thickness: ToothThickness::AtReference(4.52e-3),
+        tip_radius: 0.5 * 84.05e-3,
+        root_radius: 0.5 * 70.76e-3,
+        rim_radius: 0.5 * 50.8e-3,
+        fillet: FilletSpec::Rack { tip_radius: 0.86e-3 },
+        ..GearSpec::default()
+    })
+    .unwrap();
+    let sector = SectorMesh::new(&pinion, &MeshDensity::default(), "pinion").unwrap();
+    let inertia = BodyInertia::of_gear(&sector, 27, 34.925e-3, Material::STEEL.density);
+    // the printed tooth thickness is rounded to 0.01 mm
+    assert!((inertia.mass / 0.7294 - 1.0).abs() < 3e-3, "{inertia:?}");
+    assert!((inertia.polar - 0.0008).abs() < 0.5e-4, "{inertia:?}: half a unit of the last printed digit");
 }
