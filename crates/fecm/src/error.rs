@@ -86,6 +86,22 @@ pub enum FecmError {
         /// Largest allowed (m).
         allowed: f64,
     },
+    /// An eigenvalue iteration of a dense matrix did not converge.
+    #[error("the eigenvalues of the {what} matrix of size {size} did not converge")]
+    EigenNotConverged {
+        /// Which matrix.
+        what: &'static str,
+        /// Its size.
+        size: usize,
+    },
+    /// A healthy sector is not its own mirror image, which its modes rest on.
+    #[error("the sector mesh is not symmetric about its tooth: no image of the node at ({x:.6} m, {y:.6} m)")]
+    NotMirrored {
+        /// Place (m).
+        x: f64,
+        /// Place (m).
+        y: f64,
+    },
     /// A malformed contact problem.
     #[error(transparent)]
     Contact(#[from] crate::lcp::LcpError),

@@ -5,6 +5,7 @@
 //! | [`element`], [`mesh`], [`face`], [`assembly`] | finite elements of an extruded body |
 //! | [`condense`], [`ring`] | one sector condensed, the ring of sectors closed |
 //! | [`body`] | a gear as the contact problem sees it |
+//! | [`mass`], [`modes`] | inertia of a gear, and its elastic modes with the hub held |
 //! | [`profile`], [`pairing`], [`search`] | flanks in space, exact separations, tip contact |
 //! | [`halfspace`], [`nearfield`], [`contact`] | local deformation, contact grid and its compliance |
 //! | [`lcp`] | the contact problem and its solvers |
@@ -50,8 +51,10 @@ pub mod face;
 pub mod halfspace;
 pub mod lcp;
 pub mod linalg;
+pub mod mass;
 pub mod material;
 pub mod mesh;
+pub mod modes;
 pub mod nearfield;
 pub mod pairing;
 pub mod profile;
@@ -63,8 +66,10 @@ pub use body::BoreCondition;
 pub use error::FecmError;
 pub use face::FaceModel;
 pub use lcp::SolverKind;
+pub use mass::BodyInertia;
 pub use material::Material;
 pub use mesh::MeshDensity;
+pub use modes::{GearModes, ModesOptions};
 pub use statics::{
     ContactOptions, MemberOptions, Observer, PairModel, PairModelOptions, PositionResult, PositionStatus,
     StaticsRequest, StaticsSeries,

@@ -27,6 +27,7 @@ use nalgebra::{Point2, Rotation2, Vector2};
 use crate::error::FecmError;
 use crate::face::{FaceBasis, FaceModel, Parity};
 use crate::linalg::{add_product, add_scaled, column_slice, column_slice_mut, product, symmetrise};
+use crate::mass::BodyInertia;
 use crate::material::Material;
 use crate::mesh::MeshDensity;
 use ring::RingCompliance;
@@ -239,6 +240,23 @@ impl GearBody {
     #[must_use]
     pub fn reach_of_damage(&self) -> i32 {
         if self.damaged.is_empty() { 0 } else { self.reach + DAMAGE_MARGIN }
+    }
+
+    /// The sector of a healthy tooth, which the gear's modes are made of.
+    pub(crate) fn healthy_sector(&self) -> &Arc<ToothSector> {
+        &self.healthy
+    }
+
+    /// Whether no hub holds the bore.
+    pub(crate) fn is_free(&self) -> bool {
+        self.hub.soft.is_some()
+    }
+
+    /// Mass and moments of inertia of the healthy gear, from its mesh.
+    #[must_use]
+    pub fn inertia(&self) -> BodyInertia {
+        let width = self.families.first().map_or(0.0, |family| family.basis.width());
+        BodyInertia::of_gear(&self.healthy.shape, self.teeth as u32, width, self.material.density)
     }
 
     /// Number of teeth.

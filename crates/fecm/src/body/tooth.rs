@@ -20,7 +20,7 @@ use crate::mesh::SectorMesh;
 #[derive(Debug, Clone)]
 pub struct Station {
     /// Flank node columns and their weights for a unit normal load: `(node slot, x weight, y weight)`.
-    pub(super) load: Vec<(usize, Vector2<f64>)>,
+    pub(crate) load: Vec<(usize, Vector2<f64>)>,
     /// Depth node rows and their weights for the normal displacement.
     pub(super) depth: Vec<(usize, Vector2<f64>)>,
 }
@@ -32,7 +32,7 @@ pub struct SectorFamily {
     /// Depth displacements by unit flank loads with the cuts held.
     pub(super) base: Mat<f64>,
     /// Rows of `X` at the flank nodes: displacement by unit cut displacement.
-    pub(super) at_flank: Mat<f64>,
+    pub(crate) at_flank: Mat<f64>,
     /// Rows of `X` at the depth nodes.
     pub(super) at_depth: Mat<f64>,
 }
@@ -114,6 +114,11 @@ impl ToothSector {
         nodes.sort_unstable();
         let rows = nodes.iter().flat_map(|&(_, node)| (0..functions).filter_map(move |d| sector.interior_row(node, d)));
         rows.collect()
+    }
+
+    /// Nodes of the loaded flank, in slot order.
+    pub(crate) fn flank_nodes(&self) -> &[u32] {
+        &self.flank_nodes
     }
 
     /// Positions of the flank nodes, in slot order.
