@@ -11,6 +11,7 @@
 //!
 //! Left out: friction, Coriolis and centrifugal terms of the elastic motion in the turning frame, inertia coupling between hub translations and modes.
 
+mod flank;
 mod impulse;
 mod integrator;
 mod operator;

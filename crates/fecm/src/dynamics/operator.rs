@@ -12,6 +12,7 @@
 use faer::Mat;
 use nalgebra::{Point2, Vector2};
 
+use super::flank::{PairModes, take_out};
 use super::system::{StepMatrix, System};
 use crate::error::FecmError;
 use crate::lcp::{FactorMemory, HeldBlock, HeldProblem, solve_held};
@@ -75,12 +76,6 @@ pub(super) struct Operator {
     mirrored: bool,
 }
 
-/// Modal displacement of flanks: `Phi` for the cells of an operator.
-pub(super) trait FlankModes: Sync {
-    /// Fills `phi` (cells x modes) with the opening of each cell by unit modal coordinates.
-    fn openings(&self, settled: &Settled, model: &PairModel, phi: &mut Mat<f64>) -> Result<(), FecmError>;
-}
-
 impl Operator {
     /// From the static solution at a position.
     pub fn new(
@@ -89,7 +84,7 @@ impl Operator {
         load_factor: f64,
         flanks: Flanks,
         (system, step): (&System, &StepMatrix),
-        flank_modes: &dyn FlankModes,
+        flank_modes: &PairModes,
     ) -> Result<Self, FecmError> {
         let pairing = model.pairing();
         let grid = &settled.grid;
@@ -112,12 +107,9 @@ impl Operator {
         let settled = Settled { compliance: Mat::new(), ..settled };
         // teeth that meet on their coast flanks deform as they would at rest
         if system.mode_count() > 0 && flanks == Flanks::Drive {
-            flank_modes.openings(&settled, model, &mut modes)?;
-            let mut scaled = modes.clone();
-            for (k, (w, a)) in system.frequencies().iter().zip(&step.modal).enumerate() {
-                column_slice_mut(&mut scaled, k).iter_mut().for_each(|v| *v *= 1.0 / (w * w) - 1.0 / a);
-            }
-            add_product(compliance.as_mut(), -1.0, scaled.as_ref(), modes.transpose());
+            modes = flank_modes.openings(&settled, model)?;
+            let weights = system.frequencies().iter().zip(&step.modal).map(|(w, a)| 1.0 / (w * w) - 1.0 / a);
+            take_out(&mut compliance, &modes, weights);
             let mut divided = modes.clone();
             for (k, a) in step.modal.iter().enumerate() {
                 column_slice_mut(&mut divided, k).iter_mut().for_each(|v| *v /= a);
@@ -194,11 +186,7 @@ impl Operator {
         // C_res = C_step - Phi A_mm^-1 Phi^T
         let mut residual = self.compliance.clone();
         if system.mode_count() > 0 {
-            let mut divided = self.modes.clone();
-            for (k, a) in modal.iter().enumerate() {
-                column_slice_mut(&mut divided, k).iter_mut().for_each(|v| *v /= a);
-            }
-            add_product(residual.as_mut(), -1.0, divided.as_ref(), self.modes.transpose());
+            take_out(&mut residual, &self.modes, modal.iter().map(|a| 1.0 / a));
         }
         let none = Mat::zeros(gap.len(), 0);
         let stiffness = Mat::zeros(0, 0);

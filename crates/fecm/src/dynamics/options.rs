@@ -22,6 +22,9 @@ pub struct RotorOptions {
     pub inertia: RotorInertia,
     /// How each hub coordinate is held, in the order of [`HUB_COORDINATES`].
     pub supports: [Support; 6],
+    /// Elastic modes of the gear kept in motion, lowest first: 0 for a rigid body. The rest of the gear follows as it would at rest. The inertia must
+    /// then hold that of the gear itself, and the bore be held by a hub.
+    pub modes: usize,
 }
 
 /// Which contact solver a step uses.
@@ -133,7 +136,7 @@ impl RotorOptions {
     pub fn on_ideal_bearings(inertia: RotorInertia, rotation: Support) -> Self {
         let mut supports = [Support::Fixed; 6];
         supports[ROTATION] = rotation;
-        Self { inertia, supports }
+        Self { inertia, supports, modes: 0 }
     }
 
     /// Mass of each hub coordinate (kg, kg m^2).

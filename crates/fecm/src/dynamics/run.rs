@@ -3,17 +3,16 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use faer::Mat;
-
+use super::flank::PairModes;
 use super::integrator::Weights;
-use super::operator::{FlankModes, Flanks, Operator};
+use super::operator::{Flanks, Operator};
 use super::options::{DynamicsOptions, DynamicsRequest, DynamicsState, InitialState, Motion, StepSolver};
 use super::result::{DynamicsRun, EnergyBalance, RunStats, Snapshot, StepRecord};
 use super::schedule::{LEVELS, Place, Schedule, ScheduleSpec, mirrored};
 use super::system::{BodyTerms, Generalised, ROTATION, StepMatrix, System};
 use crate::error::FecmError;
 use crate::lcp::{FactorMemory, HeldBlock, HeldProblem, HeldSolution, solve_held, solve_held_by_lemke};
-use crate::statics::{Observer, PairModel, Settled, StaticsRequest};
+use crate::statics::{Observer, PairModel, StaticsRequest};
 
 /// A gear pair made ready to run: options checked, bodies assembled.
 pub struct PairDynamics<'a> {
@@ -21,6 +20,7 @@ pub struct PairDynamics<'a> {
     /// What coast flanks see; the model itself where nothing is damaged.
     healthy: Option<PairModel>,
     options: DynamicsOptions,
+    modes: PairModes,
     system: System,
 }
 
@@ -31,15 +31,6 @@ const ENERGY_LEVEL: u32 = 2;
 /// Deflection at which a run is given up, in base pitches.
 const MOST_DEFLECTION: f64 = 0.25;
 
-/// No elastic modes.
-struct NoModes;
-
-impl FlankModes for NoModes {
-    fn openings(&self, _: &Settled, _: &PairModel, _: &mut Mat<f64>) -> Result<(), FecmError> {
-        Ok(())
-    }
-}
-
 impl<'a> PairDynamics<'a> {
     /// Prepares a pair.
     ///
@@ -47,16 +38,20 @@ impl<'a> PairDynamics<'a> {
     /// Options out of range; hubs lighter than the elastic bodies on them.
     pub fn new(model: &'a PairModel, options: &DynamicsOptions) -> Result<Self, FecmError> {
         options.validate()?;
-        let bodies = options.rotors.each_ref().map(|rotor| BodyTerms {
-            mass: rotor.masses(),
-            supports: rotor.supports,
-            frequencies: Vec::new(),
-            participation: Vec::new(),
+        let modes = PairModes::new(model, options.rotors.each_ref().map(|rotor| rotor.modes))?;
+        let bodies = [0, 1].map(|index: usize| {
+            let (rotor, own) = (&options.rotors[index], &modes.of(index).modes);
+            BodyTerms {
+                mass: rotor.masses(),
+                supports: rotor.supports,
+                frequencies: own.iter().map(|mode| mode.angular_frequency).collect(),
+                participation: own.iter().map(|mode| mode.rigid_coupling).collect(),
+            }
         });
         let system = System::new(&bodies, options.damping)?;
         let damaged = model.options().damage.iter().any(|damage| !damage.is_empty());
         let healthy = if damaged { Some(model.with_damage(&[Vec::new(), Vec::new()])?) } else { None };
-        Ok(Self { model, healthy, options: options.clone(), system })
+        Ok(Self { model, healthy, options: options.clone(), modes, system })
     }
 
     /// Runs `steps` steps from the start.
@@ -92,7 +87,7 @@ impl<'a> PairDynamics<'a> {
             },
             system: &self.system,
             step: Arc::clone(&matrix),
-            modes: &NoModes,
+            modes: &self.modes,
             most_bytes: self.options.operator_memory,
         });
         let pair = self.model.pairing();
@@ -139,6 +134,12 @@ impl<'a> PairDynamics<'a> {
                 allowed: "at least one gear whose rotation is not fixed",
             })
         }
+    }
+
+    /// Natural frequencies of the elastic modes kept of the pinion (0) or wheel (1), hub held (Hz).
+    #[must_use]
+    pub fn mode_frequencies(&self, body: usize) -> Vec<f64> {
+        self.modes.of(body).modes.iter().map(|mode| mode.angular_frequency / (2.0 * std::f64::consts::PI)).collect()
     }
 
     /// Mesh cycles after which the teeth in mesh repeat, for pairs that differ from others: 1 for a healthy pair.

@@ -9,7 +9,8 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::operator::{FlankModes, Flanks, Operator};
+use super::flank::PairModes;
+use super::operator::{Flanks, Operator};
 use super::system::{StepMatrix, System};
 use crate::error::FecmError;
 use crate::pairing::Pairing;
@@ -56,7 +57,7 @@ pub(super) struct Schedule<'a> {
     special: [Vec<i64>; 2],
     system: &'a System,
     step: Arc<StepMatrix>,
-    modes: &'a dyn FlankModes,
+    modes: &'a PairModes,
     chunks: BTreeMap<ChunkKey, Chunk>,
     clock: u64,
     most_bytes: usize,
@@ -85,7 +86,7 @@ pub(super) struct ScheduleSpec<'a> {
     pub steps: usize,
     pub system: &'a System,
     pub step: Arc<StepMatrix>,
-    pub modes: &'a dyn FlankModes,
+    pub modes: &'a PairModes,
     /// Memory for operators (bytes).
     pub most_bytes: usize,
 }

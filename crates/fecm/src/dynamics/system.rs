@@ -59,8 +59,6 @@ pub(super) struct BodyTerms {
 pub(super) struct System {
     /// Body and hub coordinate of every rigid coordinate.
     pub coordinates: Vec<(usize, usize)>,
-    /// First mode of each body among all modes.
-    pub first_mode: Vec<usize>,
     mass: Mat<f64>,
     stiffness: Vec<f64>,
     support_damping: Vec<f64>,
@@ -115,8 +113,7 @@ impl System {
                 }
             }
         }
-        let system =
-            Self { coordinates, first_mode, mass, stiffness, support_damping, participation, frequencies, damping };
+        let system = Self { coordinates, mass, stiffness, support_damping, participation, frequencies, damping };
         system.check_mass()?;
         Ok(system)
     }

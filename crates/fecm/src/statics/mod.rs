@@ -27,6 +27,7 @@ mod series;
 pub use deformation::BodyDeformation;
 pub use model::{ModelStats, PairModel};
 pub use options::{ContactOptions, MemberOptions, PairModelOptions};
-pub(crate) use position::{GridScope, PositionRequest, Settled, Start};
+pub use position::Settled;
+pub(crate) use position::{GridScope, PositionRequest, Start};
 pub use result::{PairState, PositionResult, PositionStats, PositionStatus, PressurePatch};
 pub use series::{Observer, StaticsRequest, StaticsSeries};

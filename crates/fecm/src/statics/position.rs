@@ -50,7 +50,8 @@ impl Default for GridScope {
 }
 
 /// A position's contact problem, solved.
-pub(crate) struct Settled {
+#[derive(Debug, Clone)]
+pub struct Settled {
     /// Cells, with the gaps at `grid_rotation`.
     pub grid: ContactGrid,
     /// Compliance between all cells (m/N).
@@ -66,7 +67,7 @@ pub(crate) struct Settled {
     /// Closing rotation at first touch (rad).
     pub no_load: f64,
     /// Start for a neighbouring position.
-    pub start: Start,
+    pub(crate) start: Start,
     /// Work so far.
     pub stats: PositionStats,
 }
@@ -99,6 +100,23 @@ impl PairModel {
             None
         };
         Ok((self.collect(request, &settled, difference, stats), Some(settled.start)))
+    }
+
+    /// The contact problem of a position under a torque on the wheel (N m), solved: cells, gaps, compliance and forces, for studies of one's own.
+    /// `None` when nothing can touch.
+    ///
+    /// # Errors
+    /// As [`Self::solve`].
+    pub fn contact_at(&self, mesh_cycle: f64, torque: f64) -> Result<Option<Settled>, FecmError> {
+        let touch = self.pairing.first_touch(mesh_cycle);
+        let request = PositionRequest {
+            mesh_cycle,
+            touch: touch.as_ref(),
+            torque,
+            stiffness_difference: false,
+            keep_pressure: false,
+        };
+        self.settle(&request, None, &GridScope::default())
     }
 
     /// Solves the contact problem at a position until the geometry no longer changes. `None` when nothing can touch.
