@@ -5,6 +5,7 @@
 
 pub mod check;
 pub mod document;
+pub mod dynamics;
 pub mod fault;
 pub mod kind;
 pub mod lumped_pair;
@@ -17,6 +18,7 @@ use std::path::Path;
 
 use serde::de::DeserializeOwned;
 
+pub use dynamics::DynamicsCase;
 pub use fault::{CaseFaults, Fault};
 use kind::CaseKind;
 pub use lumped_pair::LumpedPairCase;
@@ -31,6 +33,8 @@ pub enum Case {
     SpurPair(Box<SpurPairCase>),
     /// Lumped-parameter dynamics of a gear pair.
     LumpedPair(Box<LumpedPairCase>),
+    /// Finite-element/contact-mechanics dynamics of a gear pair.
+    Dynamics(Box<DynamicsCase>),
     /// Condition indicators of recorded vibration.
     Recording(Box<RecordingCase>),
 }
@@ -42,6 +46,7 @@ impl Case {
         match self {
             Self::SpurPair(_) => spur_pair::KIND.name,
             Self::LumpedPair(_) => lumped_pair::KIND.name,
+            Self::Dynamics(_) => dynamics::KIND.name,
             Self::Recording(_) => recording::KIND.name,
         }
     }

@@ -42,7 +42,7 @@ enum Command {
     },
     /// Write a commented case file to start from.
     Init {
-        /// Kind of case: spur-pair, lumped-pair, recording.
+        /// Kind of case: spur-pair, lumped-pair, dynamics, recording.
         kind: String,
         /// File to write; default: <kind>.toml.
         file: Option<PathBuf>,
@@ -127,6 +127,12 @@ fn about(case: &Case) -> String {
             let mesh = case.rule.mesh_orders.first().copied().unwrap_or_default();
             let there = if case.signal.exists() { "" } else { " (not there yet)" };
             format!("{}{there}: {mesh} mesh cycles in a period of {} turns\n", case.signal.display(), case.period_turns)
+        }
+        Case::Dynamics(case) => {
+            let speeds: Vec<String> =
+                case.speeds.iter().map(|w| format!("{:.1}", w * 30.0 / std::f64::consts::PI)).collect();
+            let states = 1 + case.severities.len();
+            format!("{} rpm, {} mesh cycles recorded, {states} states\n", speeds.join(", "), case.cycles)
         }
         Case::LumpedPair(case) => {
             let (mass, force) = (case.pair.effective_mass(), case.pair.mean_force());

@@ -1,7 +1,7 @@
 //! Meshes, deformed shape and contact pressure as grids for ParaView.
 
 use fecm::FecmError;
-use fecm::statics::{PairModel, PositionResult};
+use fecm::statics::{PairModel, PositionResult, PressurePatch};
 use nalgebra::{Point2, Rotation2, Vector3};
 
 use super::vtu::{CellShape, Field, Grid};
@@ -17,7 +17,7 @@ pub fn body(model: &PairModel, position: &PositionResult, member: usize) -> Resu
     let deformation = model.deformation(position, member)?;
     let body = &model.bodies()[member];
     let gear = model.pairing().gear(member);
-    let (centre, angle) = placement(model, position, member);
+    let (centre, angle) = placement(model, position.mesh_cycle, position.rotation, member);
     let solid = model.is_solid();
     let layers: Vec<f64> = if solid {
         (0..=LAYERS).map(|k| gear.facewidth() * (k as f64 / LAYERS as f64 - 0.5)).collect()
@@ -56,16 +56,16 @@ pub fn body(model: &PairModel, position: &PositionResult, member: usize) -> Resu
     Ok(Grid { shape, points, cells, point_fields: vec![field], cell_fields: vec![] })
 }
 
-/// Contact pressure on the pinion's flanks, in space.
+/// Contact pressure on the pinion's flanks at a mesh cycle, in space.
 #[must_use]
-pub fn pressure(model: &PairModel, position: &PositionResult) -> Grid {
+pub fn pressure(model: &PairModel, mesh_cycle: f64, patches: &[PressurePatch]) -> Grid {
     let pairing = model.pairing();
     let pinion = pairing.gear(0);
     let (mut points, mut cells) = (Vec::new(), Vec::new());
     let (mut pressures, mut pairs) = (Vec::new(), Vec::new());
-    for patch in &position.patches {
+    for patch in patches {
         let tooth = patch.pair * pairing.tooth_steps()[0];
-        let (centre, angle) = placement(model, position, 0);
+        let (centre, angle) = placement(model, mesh_cycle, 0.0, 0);
         let own = Rotation2::new(angle + model.bodies()[0].sector_angle() * f64::from(tooth));
         let on_flank = |roll: f64, z: f64| -> Vector3<f64> {
             let p = centre + own * pinion.flank_point(pairing.side(0), roll).coords;
@@ -101,12 +101,12 @@ pub fn pressure(model: &PairModel, position: &PositionResult) -> Grid {
     Grid { shape: CellShape::Quad, points, cells, point_fields: vec![], cell_fields }
 }
 
-/// Centre of a gear and angle of its tooth 0 at a position.
-fn placement(model: &PairModel, position: &PositionResult, member: usize) -> (Point2<f64>, f64) {
+/// Centre of a gear and angle of its tooth 0 at a mesh cycle and closing rotation of the wheel (rad).
+fn placement(model: &PairModel, mesh_cycle: f64, rotation: f64, member: usize) -> (Point2<f64>, f64) {
     let which = if member == 0 { gear_geom::Member::Pinion } else { gear_geom::Member::Wheel };
     let pair = model.pairing().pair();
-    let closing = if member == 0 { 0.0 } else { pair.closing_direction() * position.rotation };
-    (pair.centre(which), pair.tooth_angle(which, 0, position.mesh_cycle) + closing)
+    let closing = if member == 0 { 0.0 } else { pair.closing_direction() * rotation };
+    (pair.centre(which), pair.tooth_angle(which, 0, mesh_cycle) + closing)
 }
 
 /// The bilinear quads between the nodes of an element.

@@ -1,6 +1,8 @@
 //! Result files: tables, summary, ParaView files, and the folder that holds them.
 
 pub mod damage;
+pub mod dynamics_summary;
+pub mod dynamics_tables;
 pub mod folder;
 pub mod geometry;
 pub mod lumped_summary;

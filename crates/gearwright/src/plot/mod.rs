@@ -1,5 +1,6 @@
 //! Figures: line charts and flank maps as SVG and PNG. The only place that names the plotting library.
 
+pub mod dynamics;
 pub mod lumped;
 pub mod recording;
 pub mod statics;

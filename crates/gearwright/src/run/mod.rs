@@ -1,5 +1,6 @@
 //! Running a case: compute, write everything, publish the folder.
 
+pub mod dynamics;
 pub mod lumped_pair;
 pub mod recording;
 pub mod spur_pair;
@@ -37,6 +38,7 @@ pub fn run(case: &Case, target: &Path, observer: &dyn RunObserver) -> anyhow::Re
     match case {
         Case::SpurPair(case) => spur_pair::run(case, target, observer),
         Case::LumpedPair(case) => lumped_pair::run(case, target, observer),
+        Case::Dynamics(case) => dynamics::run(case, target, observer),
         Case::Recording(case) => recording::run(case, target, observer),
     }
 }

@@ -167,7 +167,8 @@ fn write_damage(
         let (pinion, wheel) = rayon::join(|| grid(0), || grid(1));
         pinion?.write(&folder.file("damage_pinion.vtu"))?;
         wheel?.write(&folder.file("damage_gear.vtu"))?;
-        geometry::pressure(&worst.model, position).write(&folder.file("damage_contact_pressure.vtu"))?;
+        geometry::pressure(&worst.model, position.mesh_cycle, &position.patches)
+            .write(&folder.file("damage_contact_pressure.vtu"))?;
     }
     Ok(effects)
 }
@@ -208,7 +209,7 @@ fn write_grids(
     let (pinion, wheel) = rayon::join(|| geometry::body(model, position, 0), || geometry::body(model, position, 1));
     pinion?.write(&folder.file("pinion.vtu"))?;
     wheel?.write(&folder.file("gear.vtu"))?;
-    geometry::pressure(model, position).write(&folder.file("contact_pressure.vtu"))?;
+    geometry::pressure(model, position.mesh_cycle, &position.patches).write(&folder.file("contact_pressure.vtu"))?;
     Ok(())
 }
 

@@ -1,0 +1,164 @@
+//! Dynamics of a gear pair: every state at every speed, difference signals of damaged states, films, everything written.
+
+pub mod checkpoint;
+pub mod film;
+pub mod findings;
+pub mod simulate;
+
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::{Context, anyhow, bail};
+use fecm::dynamics::PairDynamics;
+use fecm::statics::PairModel;
+
+use crate::case::DynamicsCase;
+use crate::case::lumped_pair::resolve::HEALTHY;
+use crate::output::folder::ResultsFolder;
+use crate::output::{dynamics_summary as summary, dynamics_tables as tables};
+use crate::plot::{Chart, dynamics as figures};
+
+use super::{AsObserver, Finished, RunObserver};
+use checkpoint::Checkpoint;
+use findings::{Response, Speed};
+use simulate::{Plan, simulate};
+
+/// A state of the pair.
+struct State {
+    name: String,
+    /// Number among the damaged states, from 1; `None` for the healthy one.
+    number: Option<usize>,
+    model: PairModel,
+}
+
+/// Runs a dynamics case into `target`.
+///
+/// # Errors
+/// Model errors, and anything the file system says. Nothing is left at `target` then; a checkpoint stays beside it.
+pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> anyhow::Result<Finished> {
+    let folder = ResultsFolder::create(target)?;
+    let mut times = summary::Times::default();
+    let clock = Instant::now();
+    observer.stage("condensing both gears");
+    let states = states(case)?;
+    times.condensation = clock.elapsed().as_secs_f64();
+
+    let clock = Instant::now();
+    let mut checkpoint = Checkpoint::open(case, target, case.speeds.len() * states.len());
+    if checkpoint.is_taken_up() {
+        observer.stage(&format!("taking up {}", checkpoint.file().display()));
+    }
+    let mut speeds = Vec::new();
+    for (row, &speed) in case.speeds.iter().enumerate() {
+        let mut responses: Vec<Response> = Vec::new();
+        for (column, state) in states.iter().enumerate() {
+            let index = row * states.len() + column;
+            observer.stage(&stage(case, speed, &state.name));
+            let dynamics = PairDynamics::new(&state.model, &case.options)?;
+            let plan = Plan::new(case, speed, dynamics.period());
+            let mut progress = checkpoint.run(index);
+            let mut save = |progress: &simulate::Progress| checkpoint.save(index, progress);
+            if !progress.complete {
+                simulate(&dynamics, case, &plan, &mut progress, &AsObserver(observer), &mut save)
+                    .with_context(|| format!("the run of the {} pair", state.name))?;
+            }
+            if observer.is_cancelled() {
+                bail!(
+                    "stopped; `gearwright run` of the same case and results folder goes on from {}",
+                    checkpoint.file().display()
+                );
+            }
+            let healthy = responses.first();
+            responses.push(Response::new(case, &plan, progress, (&state.name, state.number), healthy)?);
+        }
+        speeds.push(Speed::new(case, speed, responses));
+    }
+    times.response = clock.elapsed().as_secs_f64();
+
+    observer.stage("writing results");
+    let clock = Instant::now();
+    for (row, speed) in speeds.iter().enumerate() {
+        // one speed: all in the results folder itself
+        let prefix = if speeds.len() == 1 { String::new() } else { format!("speed_{}/", row + 1) };
+        std::fs::create_dir_all(folder.file(&prefix))?;
+        write_tables(&folder, &prefix, speed)?;
+        if case.inputs.output.film.is_some() {
+            for (state, response) in states.iter().zip(&speed.responses) {
+                film::write(case, &state.model, response, &|name: &str| folder.file(&format!("{prefix}{name}")))?;
+            }
+        }
+        if case.inputs.output.plots {
+            draw(case, &folder, &prefix, speed)?;
+        }
+    }
+    if speeds.len() > 1 {
+        tables::over_speed(&folder.file("over_speed.csv"), &speeds)?;
+        if case.inputs.output.plots {
+            let file = |name: &str| folder.file(name);
+            for (name, chart) in figures::over_speed(&case.inputs.title, &speeds) {
+                chart.save(&file, name).map_err(|e| anyhow!("plot {name}: {e}"))?;
+            }
+        }
+    }
+    times.output = clock.elapsed().as_secs_f64();
+    let whole = summary::summary(case, &speeds, times);
+    std::fs::write(folder.file("summary.json"), serde_json::to_string_pretty(&whole)?)?;
+    let screen = summary::screen(case, &whole);
+    let unusable = speeds.iter().flat_map(|s| &s.responses).map(|r| r.work.not_converged).sum();
+    let folder = folder.publish()?;
+    checkpoint.remove();
+    Ok(Finished { folder, screen, unusable })
+}
+
+fn stage(case: &DynamicsCase, speed: f64, state: &str) -> String {
+    match case.speeds.len() {
+        1 => state.to_owned(),
+        _ => format!("{:.1} rpm, {state}", speed * 30.0 / std::f64::consts::PI),
+    }
+}
+
+/// The healthy pair, then each severity.
+fn states(case: &DynamicsCase) -> anyhow::Result<Vec<State>> {
+    let statics = &case.statics;
+    let healthy = PairModel::new(&statics.pair, &statics.options).context("the gears cannot be modelled")?;
+    let mut states = vec![State { name: HEALTHY.into(), number: None, model: healthy }];
+    for (number, (_, severity)) in case.severities.iter().enumerate() {
+        // derived from the state before: what they have in common is computed once
+        let before = &states[states.len() - 1].model;
+        let model =
+            before.with_damage(&severity.damage).with_context(|| format!("{} cannot be modelled", severity.label))?;
+        states.push(State { name: severity.label.clone(), number: Some(number + 1), model });
+    }
+    Ok(states)
+}
+
+fn write_tables(folder: &ResultsFolder, prefix: &str, speed: &Speed) -> anyhow::Result<()> {
+    let file = |name: &str| folder.file(&format!("{prefix}{name}.csv"));
+    for response in &speed.responses {
+        let suffix = response.suffix();
+        tables::response(&file(&format!("response{suffix}")), response)?;
+        tables::spectrum(&file(&format!("spectrum{suffix}")), &response.spectrum, speed.mesh_frequency)?;
+        if let Some(difference) = &response.difference {
+            tables::difference(&file(&format!("difference{suffix}")), response, difference)?;
+            let name = format!("difference_spectrum{suffix}");
+            tables::spectrum(&file(&name), &difference.spectrum, speed.mesh_frequency)?;
+        }
+    }
+    tables::tooth_forces(&file("tooth_forces"), &speed.responses)?;
+    tables::contact_loss(&file("contact_loss"), &speed.responses)?;
+    Ok(())
+}
+
+fn draw(case: &DynamicsCase, folder: &ResultsFolder, prefix: &str, speed: &Speed) -> anyhow::Result<()> {
+    let file = |name: &str| folder.file(&format!("{prefix}{name}"));
+    let title = case.inputs.title.as_str();
+    let save = |chart: Chart, name: &str| chart.save(&file, name).map_err(|e| anyhow!("plot {name}: {e}"));
+    save(figures::transmission_error(title, speed), "dynamic_transmission_error")?;
+    save(figures::mesh_force(title, speed), "mesh_force")?;
+    save(figures::spectrum(title, speed), "spectrum")?;
+    if speed.responses.iter().any(|response| response.difference.is_some()) {
+        save(figures::difference(title, speed), "difference")?;
+        save(figures::difference_spectrum(title, speed), "difference_spectrum")?;
+    }
+    Ok(())
+}
