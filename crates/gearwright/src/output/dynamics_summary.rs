@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 
+use fecm::dynamics::{ImpulseReading, ROTATION, Support};
 use serde::Serialize;
 
 use crate::case::DynamicsCase;
 use crate::case::dynamics::schema::Dynamics;
 use crate::case::spur_pair::schema::SpurPair;
-use crate::run::dynamics::findings::{Difference, Response, Speed};
+use crate::run::dynamics::findings::{Blow, Difference, Response, Speed};
 use crate::run::dynamics::simulate::Work;
 
 /// Harmonics of the mesh frequency told.
@@ -26,6 +27,7 @@ pub struct Summary<'a> {
     spur_pair: &'a SpurPair,
     model: ModelSummary,
     speeds: Vec<SpeedSummary>,
+    impulse_tests: Vec<ImpulseSummary>,
     /// Wall time of each stage (s).
     time_s: Times,
 }
@@ -37,6 +39,8 @@ pub struct Times {
     pub condensation: f64,
     /// Responses.
     pub response: f64,
+    /// Impulse tests.
+    pub impulse: f64,
     /// Plots and files.
     pub output: f64,
 }
@@ -99,6 +103,17 @@ pub struct StateSummary {
     work: Work,
 }
 
+/// An impulse test; no values where nothing oscillates.
+#[derive(Debug, Serialize)]
+pub struct ImpulseSummary {
+    state: String,
+    mesh_cycle: f64,
+    natural_frequency_hz: Option<f64>,
+    damping_ratio_log_decrement: Option<f64>,
+    spectrum_peak_hz: Option<f64>,
+    damping_ratio_half_power: Option<f64>,
+}
+
 /// Exact difference signal.
 #[derive(Debug, Serialize)]
 pub struct DifferenceSummary {
@@ -119,13 +134,13 @@ pub struct DifferenceSummary {
 
 /// Collects the summary.
 #[must_use]
-pub fn summary<'a>(case: &'a DynamicsCase, speeds: &[Speed], times: Times) -> Summary<'a> {
+pub fn summary<'a>(case: &'a DynamicsCase, speeds: &[Speed], blows: &[Blow], times: Times) -> Summary<'a> {
     let pair = &case.statics.pair;
     let radii = [pair.pinion().base_radius(), pair.wheel().base_radius()];
     let force = case.torque / radii[1];
     let inertia = case.options.rotors.each_ref().map(|rotor| rotor.inertia.polar);
     let turning = |index: usize| radii[index].powi(2) / inertia[index];
-    let free = case.options.rotors[0].supports[fecm::dynamics::ROTATION] != fecm::dynamics::Support::Fixed;
+    let free = case.options.rotors[0].supports[ROTATION] != Support::Fixed;
     let first = speeds.first().and_then(|speed| speed.responses.first());
     Summary {
         program: "gearwright",
@@ -139,7 +154,20 @@ pub fn summary<'a>(case: &'a DynamicsCase, speeds: &[Speed], times: Times) -> Su
             coordinates: first.map(Response::coordinate_names).unwrap_or_default(),
         },
         speeds: speeds.iter().map(|speed| at_speed(speed, force)).collect(),
+        impulse_tests: blows.iter().map(impulse).collect(),
         time_s: times,
+    }
+}
+
+fn impulse(blow: &Blow) -> ImpulseSummary {
+    let read = |value: &dyn Fn(&ImpulseReading) -> f64| blow.reading.as_ref().map(value);
+    ImpulseSummary {
+        state: blow.state.clone(),
+        mesh_cycle: blow.mesh_cycle,
+        natural_frequency_hz: read(&|r| r.natural_frequency),
+        damping_ratio_log_decrement: read(&|r| r.damping_log_decrement),
+        spectrum_peak_hz: read(&|r| r.peak_frequency),
+        damping_ratio_half_power: read(&|r| r.damping_half_power),
     }
 }
 
@@ -253,6 +281,13 @@ pub fn screen(case: &DynamicsCase, s: &Summary<'_>) -> String {
             line("", format!("and {} more in over_speed.csv", lines - 2 * SHOWN));
         }
     }
+    for i in s.impulse_tests.iter().take(SHOWN) {
+        let read = match (i.natural_frequency_hz, i.damping_ratio_log_decrement, i.damping_ratio_half_power) {
+            (Some(f), Some(z), Some(h)) => format!("{f:.1} Hz, damping ratio {z:.4} (half power {h:.4})"),
+            _ => "nothing oscillates".into(),
+        };
+        line(&format!("{}, blow at cycle {:.2}", short(&i.state), i.mesh_cycle), read);
+    }
     let all = || s.speeds.iter().flat_map(|speed| &speed.states);
     let unsteady = all().filter(|state| state.steady == Some(false)).count();
     if unsteady > 0 {
@@ -261,12 +296,15 @@ pub fn screen(case: &DynamicsCase, s: &Summary<'_>) -> String {
     let steps: usize = all().map(|state| state.work.steps).sum();
     let defect = all().map(|w| w.work.worst_defect_j / w.work.energy_scale_j.max(1e-30)).fold(0.0, f64::max);
     let worst = all().map(|w| w.work.worst_complementarity).fold(0.0, f64::max);
-    line("steps", format!("{steps}; energy balance to {defect:.1e}, complementarity to {worst:.1e}"));
+    if steps > 0 {
+        line("steps", format!("{steps}; energy balance to {defect:.1e}, complementarity to {worst:.1e}"));
+    }
     let t = &s.time_s;
-    line(
-        "time",
-        format!("{:.2} s condensation, {:.2} s response, {:.2} s files", t.condensation, t.response, t.output),
-    );
+    let stages =
+        [("condensation", t.condensation), ("response", t.response), ("impulse tests", t.impulse), ("files", t.output)];
+    let spent: Vec<String> =
+        stages.iter().filter(|stage| stage.1 > 0.001).map(|(name, seconds)| format!("{seconds:.2} s {name}")).collect();
+    line("time", spent.join(", "));
     text
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use lpm::Spectrum;
 
-use crate::run::dynamics::findings::{Difference, Response, Speed};
+use crate::run::dynamics::findings::{BLOW_STEPS, Blow, Difference, Response, Speed};
 
 fn number(value: f64) -> String {
     format!("{value:.9e}")
@@ -154,6 +154,47 @@ pub fn over_speed(path: &Path, speeds: &[Speed]) -> Result<(), csv::Error> {
                 response.difference.as_ref().map_or(String::new(), |difference| um(difference.rms)),
                 steady,
             ]
+        })
+    });
+    write(path, &header, rows)
+}
+
+/// `impulse.csv`: what each impulse test reads; empty cells where nothing oscillates.
+///
+/// # Errors
+/// I/O errors.
+pub fn impulse(path: &Path, tests: &[Blow]) -> Result<(), csv::Error> {
+    let header = names(&[
+        "state",
+        "mesh_cycle",
+        "natural_frequency_hz",
+        "damping_ratio_log_decrement",
+        "spectrum_peak_hz",
+        "damping_ratio_half_power",
+    ]);
+    let rows = tests.iter().map(|test| {
+        let read = match &test.reading {
+            Some(r) => {
+                [r.natural_frequency, r.damping_log_decrement, r.peak_frequency, r.damping_half_power].map(number)
+            }
+            None => std::array::from_fn(|_| String::new()),
+        };
+        [test.state.clone(), number(test.mesh_cycle)].into_iter().chain(read).collect()
+    });
+    write(path, &header, rows)
+}
+
+/// `impulse_response.csv`: the decays, every eighth step.
+///
+/// # Errors
+/// I/O errors.
+pub fn impulse_response(path: &Path, tests: &[Blow]) -> Result<(), csv::Error> {
+    let header = names(&["state", "mesh_cycle", "time_s", "dte_um", "mesh_force_n"]);
+    let rows = tests.iter().flat_map(|test| {
+        let records = test.reading.iter().flat_map(|reading| reading.run.records.iter().step_by(BLOW_STEPS));
+        records.map(|r| {
+            let values = [test.mesh_cycle, r.time, r.transmission_error * 1e6, r.mesh_force];
+            std::iter::once(test.state.clone()).chain(values.map(number)).collect()
         })
     });
     write(path, &header, rows)

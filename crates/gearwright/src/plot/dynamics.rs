@@ -1,12 +1,14 @@
 //! Figures of dynamics.
 
-use super::{COLOURS, Chart, Line, Pattern};
-use crate::run::dynamics::findings::{Response, Speed};
+use super::{Band, COLOURS, Chart, Line, MarkedChart, Pattern};
+use crate::run::dynamics::findings::{BLOW_STEPS, Blow, Response, Speed};
 use crate::run::dynamics::simulate::Sample;
 
 const CYCLE: &str = "Mesh cycle";
 /// Spectra are drawn up to this multiple of the mesh frequency.
 const ORDERS: f64 = 6.0;
+/// A difference is seen where it exceeds this part of its largest value.
+const SEEN: f64 = 0.05;
 const PATTERNS: [Pattern; 4] = [Pattern::Solid, Pattern::Dashed, Pattern::DashDotted, Pattern::Dotted];
 
 fn line(name: &str, index: usize, points: Vec<(f64, f64)>) -> Line {
@@ -34,23 +36,77 @@ fn rounded(value: f64) -> f64 {
     (value * 100.0).round() / 100.0
 }
 
-fn over_cycles(title: &str, speed: &Speed, label: &str, value: impl Fn(&Sample) -> f64) -> Chart {
+fn over_cycles(title: &str, speed: &Speed, label: &str, value: impl Fn(&Sample) -> f64) -> MarkedChart {
     let lines = speed.responses.iter().enumerate().map(|(index, response)| {
         let points = response.mesh_cycle.iter().copied().zip(response.samples.iter().map(&value));
         line(&response.state, index, points.collect())
     });
-    chart(&heading(title, speed), [CYCLE, label], lines.collect())
+    let chart = chart(&heading(title, speed), [CYCLE, label], lines.collect());
+    // contact loss in the colour of its state, from step to step
+    let bands = speed.responses.iter().enumerate().flat_map(|(index, response)| {
+        let half = 0.5 * step(response);
+        let colour = COLOURS[index % COLOURS.len()];
+        response.contact_loss().into_iter().map(move |([from, to], _)| Band {
+            from: from - half,
+            to: to + half,
+            colour,
+        })
+    });
+    let bands = bands.collect();
+    MarkedChart { chart, marks: Vec::new(), bands, x_range: whole(speed), y_up_to: None }
+}
+
+/// Mesh cycles of a step.
+fn step(response: &Response) -> f64 {
+    match response.mesh_cycle.as_slice() {
+        [first, second, ..] => second - first,
+        _ => 0.0,
+    }
+}
+
+/// Mesh cycles of the record.
+fn whole(speed: &Speed) -> Option<(f64, f64)> {
+    let cycles = &speed.responses.first()?.mesh_cycle;
+    Some((*cycles.first()?, *cycles.last()?))
+}
+
+/// Mesh cycles in which damage is seen, and one more on either side, within the record.
+#[must_use]
+pub fn around_damage(speed: &Speed) -> Option<(f64, f64)> {
+    let seen = speed.responses.iter().flat_map(|response| {
+        let signal = response.difference.iter().flat_map(|difference| &difference.signal);
+        let largest = signal.clone().fold(0.0_f64, |most, value| value.abs().max(most));
+        let cycles = response.mesh_cycle.iter().zip(signal);
+        cycles.filter(move |(_, value)| value.abs() > SEEN * largest).map(|(cycle, _)| *cycle)
+    });
+    let ends = seen.fold(None, |ends: Option<(f64, f64)>, cycle| match ends {
+        None => Some((cycle, cycle)),
+        Some((from, to)) => Some((from.min(cycle), to.max(cycle))),
+    });
+    let ((from, to), (first, last)) = (ends?, whole(speed)?);
+    Some(((from - 1.0).max(first), (to + 1.0).min(last)))
+}
+
+/// A stretch of a chart over mesh cycles.
+#[must_use]
+pub fn within(mut chart: MarkedChart, range: (f64, f64)) -> MarkedChart {
+    for line in &mut chart.chart.lines {
+        line.points.retain(|point| (range.0..=range.1).contains(&point.0));
+    }
+    chart.bands.retain(|band| band.to >= range.0 && band.from <= range.1);
+    chart.x_range = Some(range);
+    chart
 }
 
 /// Dynamic transmission error of all states over the record.
 #[must_use]
-pub fn transmission_error(title: &str, speed: &Speed) -> Chart {
+pub fn transmission_error(title: &str, speed: &Speed) -> MarkedChart {
     over_cycles(title, speed, "Dynamic transmission error (µm)", |sample| sample.transmission_error * 1e6)
 }
 
 /// Force on the drive flanks of all states over the record.
 #[must_use]
-pub fn mesh_force(title: &str, speed: &Speed) -> Chart {
+pub fn mesh_force(title: &str, speed: &Speed) -> MarkedChart {
     over_cycles(title, speed, "Mesh force (kN)", |sample| sample.mesh_force * 1e-3)
 }
 
@@ -70,13 +126,14 @@ pub fn spectrum(title: &str, speed: &Speed) -> Chart {
 
 /// Damaged minus healthy over the record.
 #[must_use]
-pub fn difference(title: &str, speed: &Speed) -> Chart {
+pub fn difference(title: &str, speed: &Speed) -> MarkedChart {
     let lines = speed.responses.iter().enumerate().filter_map(|(index, response)| {
         let signal = &response.difference.as_ref()?.signal;
         let points = response.mesh_cycle.iter().zip(signal).map(|(cycle, d)| (*cycle, d * 1e6));
         Some(line(&response.state, index, points.collect()))
     });
-    chart(&heading(title, speed), [CYCLE, "Difference from the healthy pair (µm)"], lines.collect())
+    let chart = chart(&heading(title, speed), [CYCLE, "Difference from the healthy pair (µm)"], lines.collect());
+    MarkedChart { chart, marks: Vec::new(), bands: Vec::new(), x_range: whole(speed), y_up_to: None }
 }
 
 /// Amplitude spectra of the differences.
@@ -105,4 +162,15 @@ pub fn over_speed(title: &str, speeds: &[Speed]) -> Vec<(&'static str, Chart)> {
         ("peak_to_peak", measure("Peak-to-peak DTE (µm)", &Response::peak_to_peak)),
         ("rms", measure("RMS of the DTE about its mean (µm)", &Response::rms)),
     ]
+}
+
+/// Decay after blows.
+#[must_use]
+pub fn impulse(title: &str, tests: &[Blow]) -> Chart {
+    let lines = tests.iter().enumerate().filter_map(|(index, test)| {
+        let reading = test.reading.as_ref()?;
+        let points = reading.run.records.iter().step_by(BLOW_STEPS).map(|r| (r.time * 1e3, r.transmission_error * 1e6));
+        Some(line(&format!("{}, cycle {}", test.state, test.mesh_cycle), index, points.collect()))
+    });
+    chart(title, ["Time (ms)", "Dynamic transmission error (µm)"], lines.collect())
 }

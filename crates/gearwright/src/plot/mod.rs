@@ -8,7 +8,8 @@ pub mod statics;
 use std::path::Path;
 
 use kuva::prelude::{
-    ColorMap, Heatmap, Layout, LegendPosition, LinePlot, Plot, ReferenceLine, render_to_png, render_to_svg,
+    ColorMap, Heatmap, Layout, LegendPosition, LinePlot, Plot, ReferenceLine, ShadedRegion, render_to_png,
+    render_to_svg,
 };
 
 /// Line patterns, told apart without colour.
@@ -74,13 +75,26 @@ pub struct Mark {
     pub dotted: bool,
 }
 
-/// A chart with marks, and limits of its axes where they are not the lines' own.
+/// A stretch of the abscissa that is shaded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// From.
+    pub from: f64,
+    /// To.
+    pub to: f64,
+    /// Colour.
+    pub colour: &'static str,
+}
+
+/// A chart with marks and shaded bands, and limits of its axes where they are not the lines' own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MarkedChart {
     /// The chart.
     pub chart: Chart,
     /// Marks.
     pub marks: Vec<Mark>,
+    /// Bands.
+    pub bands: Vec<Band>,
     /// Abscissae from and to.
     pub x_range: Option<(f64, f64)>,
     /// An ordinate that must be in sight.
@@ -192,6 +206,10 @@ impl MarkedChart {
             if high < wanted {
                 layout = layout.with_y_axis_max(wanted + 0.05 * (wanted - low));
             }
+        }
+        for band in &self.bands {
+            let region = ShadedRegion::vertical(band.from, band.to).with_color(band.colour).with_opacity(0.2);
+            layout = layout.with_shaded_region(region);
         }
         for mark in &self.marks {
             let line = if mark.upright { ReferenceLine::vertical(mark.at) } else { ReferenceLine::horizontal(mark.at) };

@@ -95,14 +95,14 @@ fn signal(case: &RecordingCase, channel: &Channel, detail: &Detail) -> MarkedCha
     ];
     let title = heading(case, &format!("{} and its synchronous average", channel.name));
     let chart = chart(title, "Turns of the shaft", amplitude(case), lines);
-    MarkedChart { chart, marks: Vec::new(), x_range: Some((0.0, case.period_turns)), y_up_to: None }
+    MarkedChart { chart, marks: Vec::new(), bands: Vec::new(), x_range: Some((0.0, case.period_turns)), y_up_to: None }
 }
 
 fn difference(case: &RecordingCase, channel: &Channel, detail: &Detail) -> MarkedChart {
     let lines = vec![line("", 0, over_period(case, &detail.signals[2]))];
     let title = heading(case, &format!("difference signal of {}", channel.name));
     let chart = chart(title, "Turns of the shaft", amplitude(case), lines);
-    MarkedChart { chart, marks: Vec::new(), x_range: Some((0.0, case.period_turns)), y_up_to: None }
+    MarkedChart { chart, marks: Vec::new(), bands: Vec::new(), x_range: Some((0.0, case.period_turns)), y_up_to: None }
 }
 
 /// Amplitudes in dB of the largest, mesh harmonics and the sidebands that the difference signal loses marked.
@@ -141,7 +141,7 @@ fn order_spectrum(case: &RecordingCase, channel: &Channel, detail: &Detail) -> M
             }
         }
     }
-    MarkedChart { chart, marks, x_range: Some((0.0, order(highest))), y_up_to: None }
+    MarkedChart { chart, marks, bands: Vec::new(), x_range: Some((0.0, order(highest))), y_up_to: None }
 }
 
 /// An indicator over the recordings, a line for each channel, its thresholds dashed.
@@ -177,5 +177,5 @@ fn trend_of(
     let title = heading(case, &format!("{indicator} of the {signal} signal"));
     let chart = chart(title, "Recording", indicator.replace('_', " "), lines);
     let y_up_to = marks.iter().map(|mark| mark.at).reduce(f64::max);
-    Some(MarkedChart { chart, marks, x_range: None, y_up_to })
+    Some(MarkedChart { chart, marks, bands: Vec::new(), x_range: None, y_up_to })
 }

@@ -30,7 +30,7 @@ pub struct DynamicsCase {
     pub severities: Vec<(usize, Severity)>,
     /// Options of the engine.
     pub options: DynamicsOptions,
-    /// Mean speeds of the pinion (rad/s).
+    /// Mean speeds of the pinion (rad/s); none for impulse tests alone.
     pub speeds: Vec<f64>,
     /// Torque on the gear (N m).
     pub torque: f64,
@@ -76,6 +76,11 @@ pub fn resolve(mut inputs: Dynamics, document: &Node, folder: &Path) -> Result<D
         if all > MOST_STEPS {
             fault(&format!("run.{key}"), format!("makes {all:e} steps; at most {MOST_STEPS:e}"));
         }
+    }
+    if let Some(impulse) = &inputs.impulse
+        && (impulse.mesh_cycles.is_empty() || impulse.mesh_cycles.iter().any(|cycle| !(cycle.abs() <= 1e5)))
+    {
+        fault("impulse.mesh_cycles", "must hold at least one mesh cycle, each from -100000 to 100000".into());
     }
     let from = inputs.run.mesh_cycle_from;
     if let Some(film) = inputs.output.film {
@@ -202,8 +207,9 @@ fn speeds(inputs: &Dynamics, statics: &SpurPairCase, fault: &mut impl FnMut(&str
     let (key, values, unit) = match (&run.speed_rpm, &run.mesh_frequency_hz) {
         (Some(values), None) => ("run.speed_rpm", values, turn / 60.0),
         (None, Some(values)) => ("run.mesh_frequency_hz", values, turn / f64::from(statics.pair.pinion().teeth())),
+        (None, None) if inputs.impulse.is_some() => return Vec::new(),
         (None, None) => {
-            fault("run.speed_rpm", "this key is required, or mesh_frequency_hz".into());
+            fault("run.speed_rpm", "this key is required, or mesh_frequency_hz, or a section [impulse]".into());
             return Vec::new();
         }
         (Some(_), Some(_)) => {

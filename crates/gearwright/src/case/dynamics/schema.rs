@@ -26,7 +26,11 @@ pub struct Dynamics {
     #[serde(default)]
     pub damping: Damping,
     /// Speed, steps, transient and record.
+    #[serde(default)]
     pub run: Run,
+    /// Blows at standstill: natural frequency and damping ratio of every state.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub impulse: Option<Impulse>,
     /// Discretisation of the contact and integration in time.
     #[serde(default)]
     pub numerics: Numerics,
@@ -168,59 +172,60 @@ pub struct Damping {
 
 /// What is run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, default)]
 pub struct Run {
     /// Mean speed of the pinion (rpm): a number, or a list of speeds, each run from the start anew. Give this or `mesh_frequency_hz`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_rpm: Option<Values>,
     /// Mesh frequency (Hz): a number, or a list.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh_frequency_hz: Option<Values>,
     /// Steps of time in a mesh cycle.
-    #[serde(default = "steps")]
     #[schemars(range(min = 8, max = 10000))]
     pub steps_per_mesh_cycle: u32,
     /// Mesh cycle at which the record begins.
-    #[serde(default)]
     #[schemars(range(min = -100000.0, max = 100000.0))]
     pub mesh_cycle_from: f64,
     /// Mesh cycle at which tooth pair 0 touches at the pitch point. A damaged tooth 0 comes about 0.7 mesh cycles before it, so this moves the
     /// damage within the record. Default: that of the spur-pair case.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = -100000.0, max = 100000.0))]
     pub mesh_cycle_origin: Option<f64>,
-    /// Mesh cycles recorded. Default: one rotation of the damaged gear, of the pinion where none is damaged.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Mesh cycles recorded. Default: one rotation of the damaged gear, of the pinion where none or both are damaged.
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 100000))]
     pub mesh_cycles: Option<u32>,
-    /// How each run starts: "equilibrium" (under load, at rest against the mean motion) or "unloaded" (teeth touch, the load comes at once).
-    #[serde(default)]
+    /// How a run starts: "equilibrium" (under load, at rest against the mean motion) or "unloaded" (teeth touch, the load comes at once).
+    /// Where the motion is to repeat, damaged pairs start from the steady motion of the healthy one.
     pub start: Start,
     /// Mesh cycles run before the record. Default: until the motion repeats.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1000000))]
     pub transient_mesh_cycles: Option<u32>,
     /// The motion repeats when the root mean square of its change from one period to the next is this part of that of its variation. A period
     /// is a mesh cycle of a healthy pair, a rotation of a damaged gear.
-    #[serde(default = "tolerance")]
     #[schemars(range(min = 1e-12, max = 0.1))]
     pub steady_tolerance: f64,
-    /// Mesh cycles after which it is recorded although it does not repeat; the summary then says so.
-    #[serde(default = "limit")]
+    /// Mesh cycles after which it is recorded although it does not repeat; the summary then says so. At least two periods are run.
     #[schemars(range(min = 2, max = 10000000))]
     pub steady_limit_mesh_cycles: u32,
 }
 
-fn steps() -> u32 {
-    50
-}
-
-fn tolerance() -> f64 {
-    1e-4
-}
-
-fn limit() -> u32 {
-    500
+impl Default for Run {
+    fn default() -> Self {
+        Self {
+            speed_rpm: None,
+            mesh_frequency_hz: None,
+            steps_per_mesh_cycle: 50,
+            mesh_cycle_from: 0.0,
+            mesh_cycle_origin: None,
+            mesh_cycles: None,
+            start: Start::Equilibrium,
+            transient_mesh_cycles: None,
+            steady_tolerance: 1e-4,
+            steady_limit_mesh_cycles: 500,
+        }
+    }
 }
 
 /// How a run starts.
@@ -232,6 +237,30 @@ pub enum Start {
     Equilibrium,
     /// First touch without load.
     Unloaded,
+}
+
+/// Numerical impulse tests: standing gears under their torque get a half-sine pulse of torque an eighth of a natural period long.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Impulse {
+    /// Mesh cycles at which the gears stand.
+    pub mesh_cycles: Vec<f64>,
+    /// Peak of the pulse as a part of the torque: small, so that teeth stay in contact.
+    #[serde(default = "pulse")]
+    #[schemars(range(min = 1e-6, max = 10.0))]
+    pub pulse_fraction: f64,
+    /// Natural periods recorded.
+    #[serde(default = "periods")]
+    #[schemars(range(min = 8, max = 10000))]
+    pub natural_periods: u32,
+}
+
+fn pulse() -> f64 {
+    0.05
+}
+
+fn periods() -> u32 {
+    40
 }
 
 /// Discretisation and integration. The finite-element mesh is that of the spur-pair case.

@@ -1,6 +1,6 @@
 //! What a run shows: the record with its times, spectra, contact loss, and the difference from the healthy pair.
 
-use fecm::dynamics::HUB_COORDINATES;
+use fecm::dynamics::{HUB_COORDINATES, ImpulseReading, Support};
 use hums::moments::Moments;
 use lpm::Spectrum;
 
@@ -45,12 +45,28 @@ pub struct Response {
     pub change: Option<f64>,
     /// Whether the motion repeats; `None` where it was not looked at.
     pub steady: Option<bool>,
+    /// State of the engine at the end.
+    pub end: Option<SavedState>,
     /// State of the engine at the first frame of a film.
     pub film_start: Option<SavedState>,
     /// Lengths of the run.
     pub plan: Plan,
     /// Work done.
     pub work: Work,
+}
+
+/// Steps of a decay from one that is told to the next.
+pub const BLOW_STEPS: usize = 8;
+
+/// An impulse test.
+#[derive(Debug)]
+pub struct Blow {
+    /// State.
+    pub state: String,
+    /// Mesh cycle at which the gears stand.
+    pub mesh_cycle: f64,
+    /// What it reads; `None` where nothing oscillates.
+    pub reading: Option<ImpulseReading>,
 }
 
 /// Exact difference signal.
@@ -108,7 +124,7 @@ impl Response {
         let difference = healthy.map(|healthy| Difference::new(&signal, healthy, duration)).transpose()?;
         let tolerance = case.inputs.run.steady_tolerance;
         let coordinates = case.options.rotors.iter().enumerate().flat_map(|(gear, rotor)| {
-            let moving = rotor.supports.iter().enumerate().filter(|(_, s)| **s != fecm::dynamics::Support::Fixed);
+            let moving = rotor.supports.iter().enumerate().filter(|(_, s)| **s != Support::Fixed);
             moving.map(move |(axis, _)| (gear, axis))
         });
         Ok(Self {
@@ -124,6 +140,7 @@ impl Response {
             transient: before as f64 / steps,
             change: progress.change,
             steady: plan.transient.is_none().then(|| progress.change.is_some_and(|change| change < tolerance)),
+            end: progress.state,
             film_start: progress.film_start,
             plan: *plan,
             work: progress.work,

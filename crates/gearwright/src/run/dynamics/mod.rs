@@ -9,19 +9,19 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context, anyhow, bail};
-use fecm::dynamics::PairDynamics;
+use fecm::dynamics::{ImpulseSpec, PairDynamics};
 use fecm::statics::PairModel;
 
 use crate::case::DynamicsCase;
 use crate::case::lumped_pair::resolve::HEALTHY;
 use crate::output::folder::ResultsFolder;
 use crate::output::{dynamics_summary as summary, dynamics_tables as tables};
-use crate::plot::{Chart, dynamics as figures};
+use crate::plot::dynamics as figures;
 
 use super::{AsObserver, Finished, RunObserver};
 use checkpoint::Checkpoint;
-use findings::{Response, Speed};
-use simulate::{Plan, simulate};
+use findings::{Blow, Response, Speed};
+use simulate::{Plan, simulate, start};
 
 /// A state of the pair.
 struct State {
@@ -59,7 +59,8 @@ pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> an
             let mut progress = checkpoint.run(index);
             let mut save = |progress: &simulate::Progress| checkpoint.save(index, progress);
             if !progress.complete {
-                simulate(&dynamics, case, &plan, &mut progress, &AsObserver(observer), &mut save)
+                let start = start(case, &plan, responses.first().and_then(|healthy| healthy.end.as_ref()));
+                simulate(&dynamics, case, &plan, start, &mut progress, &AsObserver(observer), &mut save)
                     .with_context(|| format!("the run of the {} pair", state.name))?;
             }
             if observer.is_cancelled() {
@@ -74,6 +75,13 @@ pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> an
         speeds.push(Speed::new(case, speed, responses));
     }
     times.response = clock.elapsed().as_secs_f64();
+
+    let clock = Instant::now();
+    let blows = impulse_tests(case, &states, observer)?;
+    times.impulse = clock.elapsed().as_secs_f64();
+    if observer.is_cancelled() {
+        bail!("stopped; `gearwright run` of the same case and results folder goes on where it was");
+    }
 
     observer.stage("writing results");
     let clock = Instant::now();
@@ -100,8 +108,16 @@ pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> an
             }
         }
     }
+    if !blows.is_empty() {
+        tables::impulse(&folder.file("impulse.csv"), &blows)?;
+        tables::impulse_response(&folder.file("impulse_response.csv"), &blows)?;
+        if case.inputs.output.plots {
+            let chart = figures::impulse(&case.inputs.title, &blows);
+            chart.save(&|name: &str| folder.file(name), "impulse_response").map_err(|e| anyhow!("plot: {e}"))?;
+        }
+    }
     times.output = clock.elapsed().as_secs_f64();
-    let whole = summary::summary(case, &speeds, times);
+    let whole = summary::summary(case, &speeds, &blows, times);
     std::fs::write(folder.file("summary.json"), serde_json::to_string_pretty(&whole)?)?;
     let screen = summary::screen(case, &whole);
     let unusable = speeds.iter().flat_map(|s| &s.responses).map(|r| r.work.not_converged).sum();
@@ -132,6 +148,28 @@ fn states(case: &DynamicsCase) -> anyhow::Result<Vec<State>> {
     Ok(states)
 }
 
+fn impulse_tests(case: &DynamicsCase, states: &[State], observer: &dyn RunObserver) -> anyhow::Result<Vec<Blow>> {
+    let Some(impulse) = &case.inputs.impulse else { return Ok(Vec::new()) };
+    let mut blows = Vec::new();
+    for state in states {
+        observer.stage(&format!("impulse tests, {}", state.name));
+        let dynamics = PairDynamics::new(&state.model, &case.options)?;
+        for &mesh_cycle in &impulse.mesh_cycles {
+            let spec = ImpulseSpec {
+                mesh_cycle: mesh_cycle - case.origin,
+                torque: case.torque,
+                pulse: impulse.pulse_fraction,
+                periods: impulse.natural_periods as usize,
+            };
+            let reading = dynamics
+                .impulse_test(&spec, &AsObserver(observer))
+                .with_context(|| format!("the impulse test of the {} pair at mesh cycle {mesh_cycle}", state.name))?;
+            blows.push(Blow { state: state.name.clone(), mesh_cycle, reading });
+        }
+    }
+    Ok(blows)
+}
+
 fn write_tables(folder: &ResultsFolder, prefix: &str, speed: &Speed) -> anyhow::Result<()> {
     let file = |name: &str| folder.file(&format!("{prefix}{name}.csv"));
     for response in &speed.responses {
@@ -152,13 +190,20 @@ fn write_tables(folder: &ResultsFolder, prefix: &str, speed: &Speed) -> anyhow::
 fn draw(case: &DynamicsCase, folder: &ResultsFolder, prefix: &str, speed: &Speed) -> anyhow::Result<()> {
     let file = |name: &str| folder.file(&format!("{prefix}{name}"));
     let title = case.inputs.title.as_str();
-    let save = |chart: Chart, name: &str| chart.save(&file, name).map_err(|e| anyhow!("plot {name}: {e}"));
-    save(figures::transmission_error(title, speed), "dynamic_transmission_error")?;
-    save(figures::mesh_force(title, speed), "mesh_force")?;
-    save(figures::spectrum(title, speed), "spectrum")?;
-    if speed.responses.iter().any(|response| response.difference.is_some()) {
-        save(figures::difference(title, speed), "difference")?;
-        save(figures::difference_spectrum(title, speed), "difference_spectrum")?;
+    let failed = |name: &str| {
+        let name = name.to_owned();
+        move |error: String| anyhow!("plot {name}: {error}")
+    };
+    let error = figures::transmission_error(title, speed);
+    error.save(&file, "dynamic_transmission_error").map_err(failed("dynamic_transmission_error"))?;
+    figures::mesh_force(title, speed).save(&file, "mesh_force").map_err(failed("mesh_force"))?;
+    figures::spectrum(title, speed).save(&file, "spectrum").map_err(failed("spectrum"))?;
+    if let Some(range) = figures::around_damage(speed) {
+        let name = "dynamic_transmission_error_near_damage";
+        figures::within(error, range).save(&file, name).map_err(failed(name))?;
+        figures::difference(title, speed).save(&file, "difference").map_err(failed("difference"))?;
+        let name = "difference_spectrum";
+        figures::difference_spectrum(title, speed).save(&file, name).map_err(failed(name))?;
     }
     Ok(())
 }

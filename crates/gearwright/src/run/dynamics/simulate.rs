@@ -1,7 +1,8 @@
 //! One state at one speed: transient until the motion repeats, then the record, in pieces between which the run can stop.
 //!
 //! A run starts one step before the mesh cycle at which the record begins, or before the given transient. Periods of the excitation follow until the
-//! transmission error repeats; the last of them is the record, or its beginning. [`Progress`] holds all that a run needs to go on.
+//! transmission error repeats; the last of them is the record, or its beginning. A damaged pair sets out from the end of the healthy one's record,
+//! where its teeth stand as at its own start. [`Progress`] holds all that a run needs to go on.
 
 use fecm::dynamics::{DynamicsRequest, DynamicsRun, DynamicsState, InitialState, Motion, PairDynamics, StepRecord};
 use fecm::statics::Observer;
@@ -222,6 +223,15 @@ fn relative_change(before: &[f64], now: &[f64]) -> Option<f64> {
     Some((change / variation.max(1e-30)).sqrt())
 }
 
+/// Where a run begins that has no step yet.
+#[must_use]
+pub fn start(case: &DynamicsCase, plan: &Plan, healthy_end: Option<&SavedState>) -> InitialState {
+    match healthy_end {
+        Some(end) if plan.transient.is_none() => InitialState::Given(DynamicsState { step: 0, ..end.0.clone() }),
+        _ => case.initial.clone(),
+    }
+}
+
 /// Goes on with a run until its record is complete, or it is asked to stop. `save` is called at every checkpoint and at the end.
 ///
 /// # Errors
@@ -230,14 +240,14 @@ pub fn simulate(
     dynamics: &PairDynamics<'_>,
     case: &DynamicsCase,
     plan: &Plan,
+    start: InitialState,
     progress: &mut Progress,
     observer: &dyn Observer,
     save: &mut dyn FnMut(&Progress) -> anyhow::Result<()>,
 ) -> anyhow::Result<()> {
     let every = case.inputs.checkpoint.every_steps as usize;
     let tolerance = case.inputs.run.steady_tolerance;
-    let initial =
-        progress.state.as_ref().map_or_else(|| case.initial.clone(), |state| InitialState::Given(state.0.clone()));
+    let initial = progress.state.as_ref().map_or(start, |state| InitialState::Given(state.0.clone()));
     let mut runner = dynamics.start(&plan.request(case, initial, Vec::new()))?;
     let earlier = progress.work;
     if progress.state.is_none() {
