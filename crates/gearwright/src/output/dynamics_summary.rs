@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::case::DynamicsCase;
 use crate::case::dynamics::schema::Dynamics;
 use crate::case::spur_pair::schema::SpurPair;
-use crate::run::dynamics::findings::{Blow, Difference, Response, Speed};
+use crate::run::dynamics::findings::{Blow, Difference, Response, Speed, coordinate_names, moving_coordinates};
 use crate::run::dynamics::simulate::Work;
 
 /// Harmonics of the mesh frequency told.
@@ -78,8 +78,8 @@ pub struct StateSummary {
     transient_mesh_cycles: f64,
     /// Whether the motion repeats within the tolerance; none where the transient was given.
     steady: Option<bool>,
-    /// Relative change over the last period.
-    change_over_last_period: Option<f64>,
+    /// Estimate of what is left of the transient, over the variation of the transmission error.
+    transient_left: Option<f64>,
     largest_dte_um: f64,
     largest_dte_at_mesh_cycle: f64,
     smallest_dte_um: f64,
@@ -141,7 +141,6 @@ pub fn summary<'a>(case: &'a DynamicsCase, speeds: &[Speed], blows: &[Blow], tim
     let inertia = case.options.rotors.each_ref().map(|rotor| rotor.inertia.polar);
     let turning = |index: usize| radii[index].powi(2) / inertia[index];
     let free = case.options.rotors[0].supports[ROTATION] != Support::Fixed;
-    let first = speeds.first().and_then(|speed| speed.responses.first());
     Summary {
         program: "gearwright",
         version: env!("CARGO_PKG_VERSION"),
@@ -151,7 +150,7 @@ pub fn summary<'a>(case: &'a DynamicsCase, speeds: &[Speed], blows: &[Blow], tim
             mean_mesh_force_n: force,
             moving_mass_kg: 1.0 / (turning(1) + if free { turning(0) } else { 0.0 }),
             base_radius_mm: radii.map(|r| r * 1e3),
-            coordinates: first.map(Response::coordinate_names).unwrap_or_default(),
+            coordinates: coordinate_names(&moving_coordinates(case)),
         },
         speeds: speeds.iter().map(|speed| at_speed(speed, force)).collect(),
         impulse_tests: blows.iter().map(impulse).collect(),
@@ -193,7 +192,7 @@ fn of_state(response: &Response, mesh_frequency: f64, mean_force: f64) -> StateS
         period_mesh_cycles: response.period,
         transient_mesh_cycles: response.transient,
         steady: response.steady,
-        change_over_last_period: response.change,
+        transient_left: response.transient_left,
         largest_dte_um: top * 1e6,
         largest_dte_at_mesh_cycle: top_at,
         smallest_dte_um: -bottom * 1e6,

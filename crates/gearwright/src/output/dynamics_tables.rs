@@ -4,7 +4,7 @@ use std::path::Path;
 
 use lpm::Spectrum;
 
-use crate::run::dynamics::findings::{BLOW_STEPS, Blow, Difference, Response, Speed};
+use crate::run::dynamics::findings::{BLOW_STEPS, Blow, Difference, Response, Speed, coordinate_names};
 
 fn number(value: f64) -> String {
     format!("{value:.9e}")
@@ -36,7 +36,7 @@ pub fn response(path: &Path, response: &Response) -> Result<(), csv::Error> {
     let mut header = names(&["time_s", "mesh_cycle", "dte_um", "mesh_force_n", "coast_flank_force_n"]);
     // translations first: index in HUB_COORDINATES below 3
     let turns: Vec<bool> = response.coordinates.iter().map(|c| c.1 >= 3).collect();
-    let coordinates = response.coordinate_names();
+    let coordinates = coordinate_names(&response.coordinates);
     header
         .extend(coordinates.iter().zip(&turns).map(|(n, turns)| format!("{n}_{}", if *turns { "urad" } else { "um" })));
     let bearings = coordinates.iter().zip(&turns);

@@ -169,8 +169,11 @@ pub fn over_speed(title: &str, speeds: &[Speed]) -> Vec<(&'static str, Chart)> {
 pub fn impulse(title: &str, tests: &[Blow]) -> Chart {
     let lines = tests.iter().enumerate().filter_map(|(index, test)| {
         let reading = test.reading.as_ref()?;
-        let points = reading.run.records.iter().step_by(BLOW_STEPS).map(|r| (r.time * 1e3, r.transmission_error * 1e6));
+        let records = &reading.run.records;
+        let rest = records.last().map_or(0.0, |record| record.transmission_error);
+        let told = records.iter().step_by(BLOW_STEPS);
+        let points = told.map(|r| (r.time * 1e3, (r.transmission_error - rest) * 1e6));
         Some(line(&format!("{}, cycle {}", test.state, test.mesh_cycle), index, points.collect()))
     });
-    chart(title, ["Time (ms)", "Dynamic transmission error (µm)"], lines.collect())
+    chart(title, ["Time (ms)", "Dynamic transmission error from rest (µm)"], lines.collect())
 }

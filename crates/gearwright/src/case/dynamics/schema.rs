@@ -202,8 +202,8 @@ pub struct Run {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0, max = 1000000))]
     pub transient_mesh_cycles: Option<u32>,
-    /// The motion repeats when the root mean square of its change from one period to the next is this part of that of its variation. A period
-    /// is a mesh cycle of a healthy pair, a rotation of a damaged gear.
+    /// The motion repeats when the root mean square of what is left of the transient, estimated from how changes shrink from period to period, is
+    /// this part of that of the transmission error about its mean. A period is a mesh cycle of a healthy pair, a rotation of a damaged gear.
     #[schemars(range(min = 1e-12, max = 0.1))]
     pub steady_tolerance: f64,
     /// Mesh cycles after which it is recorded although it does not repeat; the summary then says so. At least two periods are run.

@@ -1,6 +1,6 @@
 //! What a run shows: the record with its times, spectra, contact loss, and the difference from the healthy pair.
 
-use fecm::dynamics::{HUB_COORDINATES, ImpulseReading, Support};
+use fecm::dynamics::{HUB_COORDINATES, ImpulseReading, RotorOptions, Support};
 use hums::moments::Moments;
 use lpm::Spectrum;
 
@@ -41,8 +41,10 @@ pub struct Response {
     pub period: usize,
     /// Mesh cycles run before the record.
     pub transient: f64,
-    /// Relative change over the last period before the record ends; `None` where it was not looked at.
-    pub change: Option<f64>,
+    /// Estimate of what is left of the transient, over the variation of the motion; `None` where it was not looked at.
+    pub transient_left: Option<f64>,
+    /// How much of a transient a mesh cycle leaves; `None` where it was not seen.
+    pub shrink: Option<f64>,
     /// Whether the motion repeats; `None` where it was not looked at.
     pub steady: Option<bool>,
     /// State of the engine at the end.
@@ -93,6 +95,26 @@ impl Speed {
     }
 }
 
+/// Coordinates of the hubs that move: gear (0 pinion, 1 driven gear) and index in `HUB_COORDINATES`.
+#[must_use]
+pub fn moving_coordinates(case: &DynamicsCase) -> Vec<(usize, usize)> {
+    let of = |(gear, rotor): (usize, &RotorOptions)| -> Vec<(usize, usize)> {
+        let held = rotor.supports.iter().enumerate();
+        held.filter(|(_, support)| **support != Support::Fixed).map(|(axis, _)| (gear, axis)).collect()
+    };
+    case.options.rotors.iter().enumerate().flat_map(of).collect()
+}
+
+/// Names of coordinates, e.g. `gear_rotation`.
+#[must_use]
+pub fn coordinate_names(coordinates: &[(usize, usize)]) -> Vec<String> {
+    let name = |&(gear, axis): &(usize, usize)| {
+        let body = if gear == 0 { "pinion" } else { "gear" };
+        format!("{body}_{}", HUB_COORDINATES[axis].replace(" about ", "_"))
+    };
+    coordinates.iter().map(name).collect()
+}
+
 impl Response {
     /// From a complete run.
     ///
@@ -109,6 +131,7 @@ impl Response {
         let steps = case.steps as f64;
         let time_step = 2.0 * std::f64::consts::PI / (teeth * plan.speed * steps);
         let before = progress.before_record.unwrap_or_default();
+        let left = progress.transient_left(plan);
         let mut samples = progress.samples;
         // a record after some periods is told as the first one: its teeth stand where those of the first did
         let periods_before = match plan.transient {
@@ -123,23 +146,21 @@ impl Response {
         let spectrum = Spectrum::of(&signal, duration)?;
         let difference = healthy.map(|healthy| Difference::new(&signal, healthy, duration)).transpose()?;
         let tolerance = case.inputs.run.steady_tolerance;
-        let coordinates = case.options.rotors.iter().enumerate().flat_map(|(gear, rotor)| {
-            let moving = rotor.supports.iter().enumerate().filter(|(_, s)| **s != Support::Fixed);
-            moving.map(move |(axis, _)| (gear, axis))
-        });
+        let period = plan.period / case.steps;
         Ok(Self {
             state: state.into(),
             number,
             time_step,
             mesh_cycle: (0..samples.len()).map(|k| case.inputs.run.mesh_cycle_from + k as f64 / steps).collect(),
             samples,
-            coordinates: coordinates.collect(),
+            coordinates: moving_coordinates(case),
             spectrum,
             difference,
-            period: plan.period / case.steps,
+            period,
             transient: before as f64 / steps,
-            change: progress.change,
-            steady: plan.transient.is_none().then(|| progress.change.is_some_and(|change| change < tolerance)),
+            transient_left: left,
+            shrink: progress.shrink.map(|shrink| shrink.min(1.0).powf(1.0 / period as f64)),
+            steady: plan.transient.is_none().then(|| left.is_some_and(|left| left < tolerance)),
             end: progress.state,
             film_start: progress.film_start,
             plan: *plan,
@@ -151,16 +172,6 @@ impl Response {
     #[must_use]
     pub fn suffix(&self) -> String {
         self.number.map_or(String::new(), |number| format!("_damage_{number}"))
-    }
-
-    /// Names of the moving coordinates, e.g. `gear_rotation`.
-    #[must_use]
-    pub fn coordinate_names(&self) -> Vec<String> {
-        let name = |&(gear, axis): &(usize, usize)| {
-            let body = if gear == 0 { "pinion" } else { "gear" };
-            format!("{body}_{}", HUB_COORDINATES[axis].replace(" about ", "_"))
-        };
-        self.coordinates.iter().map(name).collect()
     }
 
     /// Mean transmission error (m).

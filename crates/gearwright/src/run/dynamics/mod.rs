@@ -55,11 +55,12 @@ pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> an
             let index = row * states.len() + column;
             observer.stage(&stage(case, speed, &state.name));
             let dynamics = PairDynamics::new(&state.model, &case.options)?;
-            let plan = Plan::new(case, speed, dynamics.period());
+            let healthy = responses.first();
+            let plan = Plan::new(case, speed, dynamics.period(), healthy.and_then(|healthy| healthy.shrink));
             let mut progress = checkpoint.run(index);
             let mut save = |progress: &simulate::Progress| checkpoint.save(index, progress);
             if !progress.complete {
-                let start = start(case, &plan, responses.first().and_then(|healthy| healthy.end.as_ref()));
+                let start = start(case, &plan, healthy.and_then(|healthy| healthy.end.as_ref()));
                 simulate(&dynamics, case, &plan, start, &mut progress, &AsObserver(observer), &mut save)
                     .with_context(|| format!("the run of the {} pair", state.name))?;
             }
@@ -69,8 +70,8 @@ pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> an
                     checkpoint.file().display()
                 );
             }
-            let healthy = responses.first();
-            responses.push(Response::new(case, &plan, progress, (&state.name, state.number), healthy)?);
+            let response = Response::new(case, &plan, progress, (&state.name, state.number), healthy)?;
+            responses.push(response);
         }
         speeds.push(Speed::new(case, speed, responses));
     }

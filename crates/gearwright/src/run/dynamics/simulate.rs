@@ -75,8 +75,10 @@ pub struct Progress {
     pub last_period: Vec<f64>,
     /// Steps of the period or record under way.
     pub samples: Vec<Sample>,
-    /// Relative change from the last period but one to the last.
+    /// Root mean square of the change from the last period but one to the last, over that of the variation.
     pub change: Option<f64>,
+    /// How much of the change is left from one period to the next.
+    pub shrink: Option<f64>,
     /// State at the first frame of a film.
     pub film_start: Option<SavedState>,
     /// Work done.
@@ -99,6 +101,9 @@ struct StateFields {
     contact: Vec<f64>,
 }
 
+/// A change that hardly shrinks is taken to shrink by this factor: slower decay than a hundredth a period is not waited for.
+const MOST_SHRINK: f64 = 0.99;
+
 /// Lengths of a run in steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plan {
@@ -112,14 +117,16 @@ pub struct Plan {
     pub transient: Option<usize>,
     /// Largest number of steps until the motion repeats.
     pub most: usize,
+    /// How much of a transient is expected to be left after a period, until the run itself shows it.
+    pub shrink: Option<f64>,
     /// Steps of the record before the first frame of a film.
     pub film: Option<usize>,
 }
 
 impl Plan {
-    /// For a state whose teeth repeat after `period` mesh cycles.
+    /// For a state whose teeth repeat after `period` mesh cycles; `shrink` is how much of a transient a mesh cycle leaves, where known.
     #[must_use]
-    pub fn new(case: &DynamicsCase, speed: f64, period: i64) -> Self {
+    pub fn new(case: &DynamicsCase, speed: f64, period: i64, shrink: Option<f64>) -> Self {
         let run = &case.inputs.run;
         let steps = |cycles: u32| case.steps * cycles as usize;
         let film = case.inputs.output.film.map(|film| {
@@ -132,6 +139,7 @@ impl Plan {
             record: case.steps * case.cycles,
             transient: run.transient_mesh_cycles.map(steps),
             most: steps(run.steady_limit_mesh_cycles),
+            shrink: shrink.map(|shrink| shrink.powf(period.max(1) as f64)),
             film,
         }
     }
@@ -179,6 +187,13 @@ impl Plan {
 }
 
 impl Progress {
+    /// What is left of the transient after the last period, over the variation of the motion: changes that go on to shrink by the same factor sum to it.
+    #[must_use]
+    pub fn transient_left(&self, plan: &Plan) -> Option<f64> {
+        let shrink = self.shrink.or(plan.shrink).unwrap_or(0.5).min(MOST_SHRINK);
+        self.change.map(|change| change * shrink / (1.0 - shrink))
+    }
+
     /// Turns to what comes next where a stretch of the run is complete.
     fn turn(&mut self, plan: &Plan, tolerance: f64) {
         let done = self.state.as_ref().map_or(0, |state| state.0.step as usize);
@@ -191,8 +206,11 @@ impl Progress {
                 Some(_) => self.samples.clear(),
                 None if self.samples.len() >= plan.period => {
                     let now: Vec<f64> = self.samples.iter().map(|sample| sample.transmission_error).collect();
-                    self.change = relative_change(&self.last_period, &now);
-                    if self.change.is_some_and(|change| change < tolerance) || done + plan.period > plan.most {
+                    let change = relative_change(&self.last_period, &now);
+                    self.shrink = self.change.zip(change).map(|(before, now)| now / before.max(1e-300));
+                    self.change = change;
+                    let left = self.transient_left(plan);
+                    if left.is_some_and(|left| left < tolerance) || done + plan.period > plan.most {
                         self.before_record = Some((done - plan.period) as i64);
                         self.samples.truncate(plan.record);
                     } else {
