@@ -292,6 +292,10 @@ pub fn screen(case: &DynamicsCase, s: &Summary<'_>) -> String {
     if unsteady > 0 {
         line("not steady", format!("{unsteady} run(s) reached steady_limit_mesh_cycles: see summary.json"));
     }
+    let failed: usize = all().map(|state| state.work.not_converged).sum();
+    if failed > 0 {
+        line("not converged", format!("the contact of {failed} step(s): see summary.json"));
+    }
     let steps: usize = all().map(|state| state.work.steps).sum();
     let defect = all().map(|w| w.work.worst_defect_j / w.work.energy_scale_j.max(1e-30)).fold(0.0, f64::max);
     let worst = all().map(|w| w.work.worst_complementarity).fold(0.0, f64::max);
