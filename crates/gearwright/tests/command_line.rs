@@ -176,8 +176,9 @@ fn all_faults_are_told_at_once() {
 
 #[test]
 fn init_writes_cases_that_check_and_explain_themselves() {
+    // one folder for all: a case may refer to that of a kind before it
+    let scratch = Scratch::new();
     for kind in gearwright::case::kind::KINDS {
-        let scratch = Scratch::new();
         assert!(gearwright(scratch.path(), &["init", kind.name]).status.success());
         let name = format!("{}.toml", kind.name);
         let check = gearwright(scratch.path(), &["check", &name]);
