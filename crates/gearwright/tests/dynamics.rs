@@ -272,6 +272,15 @@ fn films_speeds_bearings_and_blows() {
     let (x, y) = (sum("pinion_x_bearing_force_n"), sum("pinion_y_bearing_force_n"));
     assert!((x.hypot(y) / sum("mesh_force_n") - 1.0).abs() < 5e-3, "{x} {y}");
 
+    // far below the gears' own frequencies, modes in motion change little: the gear alone weighs what its solid disc does
+    let (rigid, _) = scratch.run("rigid", &format!("{}mesh_cycles = 1\n", healthy()));
+    let modes = "[gear]\nelastic_modes = 4\n";
+    let (elastic, summary) = scratch.run("elastic", &format!("{}mesh_cycles = 1\n{modes}", healthy()));
+    assert_eq!(summary["model"]["elastic_modes_hz"][1].as_array().unwrap().len(), 4);
+    let (rigid, elastic) = [rigid, elastic].map(|folder| column(&folder.join("response.csv"), "dte_um")).into();
+    let change = rigid.iter().zip(&elastic).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(change > 1e-9 && change < 0.1, "{change} um");
+
     let (folder, summary) =
         scratch.run("speeds", &healthy().replace("speed_rpm = 3000.0", "mesh_frequency_hz = [400.0, 800.0]"));
     assert_eq!(column(&folder.join("over_speed.csv"), "mesh_frequency_hz"), [400.0, 800.0]);

@@ -56,6 +56,8 @@ pub struct ModelSummary {
     base_radius_mm: [f64; 2],
     /// Coordinates of the hubs that move.
     coordinates: Vec<String>,
+    /// Natural frequencies of the elastic modes kept of pinion and gear, hub held (Hz), healthy pair.
+    elastic_modes_hz: [Vec<f64>; 2],
 }
 
 /// A speed.
@@ -141,6 +143,7 @@ pub fn summary<'a>(case: &'a DynamicsCase, speeds: &[Speed], blows: &[Blow], tim
     let inertia = case.options.rotors.each_ref().map(|rotor| rotor.inertia.polar);
     let turning = |index: usize| radii[index].powi(2) / inertia[index];
     let free = case.options.rotors[0].supports[ROTATION] != Support::Fixed;
+    let first = speeds.first().and_then(|speed| speed.responses.first());
     Summary {
         program: "gearwright",
         version: env!("CARGO_PKG_VERSION"),
@@ -151,6 +154,7 @@ pub fn summary<'a>(case: &'a DynamicsCase, speeds: &[Speed], blows: &[Blow], tim
             moving_mass_kg: 1.0 / (turning(1) + if free { turning(0) } else { 0.0 }),
             base_radius_mm: radii.map(|r| r * 1e3),
             coordinates: coordinate_names(&moving_coordinates(case)),
+            elastic_modes_hz: first.map_or_else(Default::default, |response| response.modes.clone()),
         },
         speeds: speeds.iter().map(|speed| at_speed(speed, force)).collect(),
         impulse_tests: blows.iter().map(impulse).collect(),

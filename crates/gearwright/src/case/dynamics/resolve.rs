@@ -237,7 +237,7 @@ fn options(inputs: &Dynamics, pinion_rotation: Support) -> DynamicsOptions {
         damping: Damping {
             mass_proportional: inputs.damping.mass_proportional_per_s,
             stiffness_proportional: inputs.damping.stiffness_proportional_s,
-            modal_ratio: 0.0,
+            modal_ratio: inputs.damping.modal_ratio,
         },
         integrator: match numerics.integrator {
             schema::Integrator::Newmark => Integrator::AverageAcceleration,
@@ -274,5 +274,6 @@ fn rotor(written: &Rotor, rotation: Support) -> RotorOptions {
             transverse: written.transverse_inertia_kg_m2.unwrap_or_default(),
         },
         supports,
+        modes: written.elastic_modes as usize,
     }
 }

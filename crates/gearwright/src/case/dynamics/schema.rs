@@ -107,6 +107,11 @@ pub struct Rotor {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-18, max = 1e12))]
     pub transverse_inertia_kg_m2: Option<f64>,
+    /// Elastic modes of the gear kept in motion, lowest first; 0 for a gear that deforms as it would at rest. The inertia must hold that of the gear
+    /// itself, and the bore be held by a hub.
+    #[serde(default)]
+    #[schemars(range(min = 0, max = 2000))]
+    pub elastic_modes: u32,
     /// Bearing: springs and dampers between hub and ground. A coordinate without a stiffness does not move; one with stiffness 0 is free.
     #[serde(default)]
     pub bearing: Bearing,
@@ -158,16 +163,19 @@ pub struct Bearing {
     pub tilt_y_damping_n_m_s_per_rad: f64,
 }
 
-/// Rayleigh damping.
+/// Rayleigh and modal damping.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Damping {
     /// Force per mass and velocity from the nominal motion (1/s): `2 zeta omega` gives a motion of angular frequency omega the damping ratio zeta.
     #[schemars(range(min = 0.0, max = 1e9))]
     pub mass_proportional_per_s: f64,
-    /// Damping per stiffness of bearings (s): `2 zeta / omega` gives the damping ratio zeta.
+    /// Damping per stiffness of bearings and elastic modes (s): `2 zeta / omega` gives the damping ratio zeta.
     #[schemars(range(min = 0.0, max = 1e3))]
     pub stiffness_proportional_s: f64,
+    /// Damping ratio of every elastic mode.
+    #[schemars(range(min = 0.0, max = 10.0))]
+    pub modal_ratio: f64,
 }
 
 /// What is run.

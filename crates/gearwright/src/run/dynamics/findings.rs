@@ -33,6 +33,8 @@ pub struct Response {
     pub samples: Vec<Sample>,
     /// Moving coordinates of the hubs: gear (0 pinion, 1 driven gear) and index in `HUB_COORDINATES`.
     pub coordinates: Vec<(usize, usize)>,
+    /// Natural frequencies of the elastic modes kept of pinion and gear, hub held (Hz).
+    pub modes: [Vec<f64>; 2],
     /// Spectrum of the transmission error (m).
     pub spectrum: Spectrum,
     /// Damaged minus healthy.
@@ -125,6 +127,7 @@ impl Response {
         plan: &Plan,
         progress: Progress,
         (state, number): (&str, Option<usize>),
+        modes: [Vec<f64>; 2],
         healthy: Option<&Self>,
     ) -> anyhow::Result<Self> {
         let teeth = f64::from(case.statics.pair.pinion().teeth());
@@ -154,6 +157,7 @@ impl Response {
             mesh_cycle: (0..samples.len()).map(|k| case.inputs.run.mesh_cycle_from + k as f64 / steps).collect(),
             samples,
             coordinates: moving_coordinates(case),
+            modes,
             spectrum,
             difference,
             period,

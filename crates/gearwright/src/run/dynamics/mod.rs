@@ -55,12 +55,15 @@ pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> an
             let index = row * states.len() + column;
             observer.stage(&stage(case, speed, &state.name));
             let dynamics = PairDynamics::new(&state.model, &case.options)?;
+            let modes = [0, 1].map(|body| dynamics.mode_frequencies(body));
             let healthy = responses.first();
             let plan = Plan::new(case, speed, dynamics.period(), healthy.and_then(|healthy| healthy.shrink));
             let mut progress = checkpoint.run(index);
             let mut save = |progress: &simulate::Progress| checkpoint.save(index, progress);
             if !progress.complete {
-                let start = start(case, &plan, healthy.and_then(|healthy| healthy.end.as_ref()));
+                // modes of a model of half the face are others than those of the whole
+                let like = healthy.filter(|healthy| healthy.modes == modes);
+                let start = start(case, &plan, like.and_then(|healthy| healthy.end.as_ref()));
                 simulate(&dynamics, case, &plan, start, &mut progress, &AsObserver(observer), &mut save)
                     .with_context(|| format!("the run of the {} pair", state.name))?;
             }
@@ -70,7 +73,7 @@ pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> an
                     checkpoint.file().display()
                 );
             }
-            let response = Response::new(case, &plan, progress, (&state.name, state.number), healthy)?;
+            let response = Response::new(case, &plan, progress, (&state.name, state.number), modes, healthy)?;
             responses.push(response);
         }
         speeds.push(Speed::new(case, speed, responses));
