@@ -212,10 +212,10 @@ fn body_options(pairing: &Pairing, options: &PairModelOptions, symmetric: bool, 
 }
 
 /// The cracks among a gear's damage.
-fn cracks_of(damage: &[ToothDamage]) -> Vec<(i64, RootCrack)> {
+pub(super) fn cracks_of(damage: &[ToothDamage]) -> Vec<(i64, RootCrack)> {
     let cracks = damage.iter().filter_map(|damage| match damage.damage {
         Damage::Crack(crack) => Some((damage.tooth, crack)),
-        Damage::Pit(_) => None,
+        _ => None,
     });
     cracks.collect()
 }

@@ -169,7 +169,8 @@ impl PairModel {
                     grid.compliance(bodies, self.pairing.tooth_steps(), &self.near_field(cell))?
                 }
             };
-            let active = warm.as_ref().map(|warm| to_cells(&grid, request.mesh_cycle, warm, self.never()));
+            let active =
+                warm.as_ref().map(|warm| to_cells(&grid, request.mesh_cycle, warm, 0.5 * self.pairing.never()));
             let (gaps, arms) = (grid.gaps(), grid.wheel_arms());
             let problem =
                 ContactProblem { compliance: compliance.as_ref(), gap: &gaps, arm: &arms, load: request.torque };
@@ -179,7 +180,7 @@ impl PairModel {
             let grid_rotation = rotation;
             let change = solution.approach;
             rotation += change;
-            let active = from_cells(&grid, request.mesh_cycle, &solution.forces, self.never());
+            let active = from_cells(&grid, request.mesh_cycle, &solution.forces, 0.5 * self.pairing.never());
             let start = Start { closing: rotation - no_load, cell, reach, columns: grid.face.centres.len(), active };
             warm = Some(start.clone());
             let crowded = grid_is_crowded(&grid, &solution.forces);
@@ -210,11 +211,6 @@ impl PairModel {
             }
         }
         Ok(outcome)
-    }
-
-    /// Gap (m) that no load closes: positions count as overloaded at a quarter of this deflection.
-    fn never(&self) -> f64 {
-        self.pairing.pair().base_pitch()
     }
 
     /// Pairs that the deflection can close, the wheel closed by `rotation`, with rows around what is known of their contact (`spans`), else
@@ -399,7 +395,7 @@ impl Start {
     }
 }
 
-/// Active cells of a grid by pair, row and column, pairs counted from the position's own. In loaded rows also those with a gap of `never`.
+/// Active cells of a grid by pair, row and column, pairs counted from the position's own. In loaded rows also those with a gap beyond `never`.
 fn from_cells(grid: &ContactGrid, mesh_cycle: f64, forces: &[f64], never: f64) -> Vec<(i32, i32, usize)> {
     let columns = grid.face.centres.len();
     let own = mesh_cycle.floor() as i32;
@@ -419,7 +415,7 @@ fn from_cells(grid: &ContactGrid, mesh_cycle: f64, forces: &[f64], never: f64) -
     cells
 }
 
-/// The start's active cells on a grid whose cells may have another size, less those with a gap of `never`.
+/// The start's active cells on a grid whose cells may have another size, less those with a gap beyond `never`.
 fn to_cells(grid: &ContactGrid, mesh_cycle: f64, start: &Start, never: f64) -> Vec<bool> {
     let columns = grid.face.centres.len();
     let own = mesh_cycle.floor() as i32;

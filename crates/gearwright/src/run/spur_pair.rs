@@ -56,13 +56,13 @@ pub fn run(case: &SpurPairCase, target: &Path, observer: &dyn RunObserver) -> an
         observer.stage(&severity.label);
         // derived from the severity before: what a first unsymmetric one had to make anew is shared by the rest
         let before = damaged.last().map_or(&model, |d: &Damaged| &d.model);
-        let model =
+        let damaged_model =
             before.with_damage(&severity.damage).with_context(|| format!("{} cannot be modelled", severity.label))?;
-        let series = model
-            .solve(&request, &AsObserver(observer))
+        let series = damaged_model
+            .solve_from(&request, (&model, &solved), &AsObserver(observer))
             .with_context(|| format!("the contact with {} cannot be solved", severity.label))?;
-        times.damage += model.stats().condensation_time.as_secs_f64() + series.time.as_secs_f64();
-        damaged.push(Damaged { label: severity.label.clone(), model, series });
+        times.damage += damaged_model.stats().condensation_time.as_secs_f64() + series.time.as_secs_f64();
+        damaged.push(Damaged { label: severity.label.clone(), model: damaged_model, series });
     }
 
     if observer.is_cancelled() {
