@@ -10,6 +10,7 @@ use super::position::{PositionRequest, Start};
 use super::result::{PositionResult, PressurePatch};
 use crate::error::FecmError;
 use crate::lcp::SolveStats;
+use crate::nearfield::FaceCells;
 
 /// Watches a computation; called from any thread.
 pub trait Observer: Sync {
@@ -115,7 +116,7 @@ impl PairModel {
                     let known = known.and_then(|known| Known::find(known, first + index, mesh_cycle, torque));
                     let copied = known.as_ref().filter(|known| same_bodies && self.keeps(known, request));
                     let (result, start) = if let Some(known) = copied {
-                        (known.taken_over(), known.start.clone())
+                        (known.taken_over(&self.face), known.start.clone())
                     } else {
                         let touch = touch.get_or_insert_with(|| self.pairing.first_touch(mesh_cycle));
                         let position = PositionRequest {
@@ -166,12 +167,14 @@ impl PairModel {
     /// Whether a position solved with sound flanks is that of this model.
     fn keeps(&self, known: &Known<'_>, request: &StaticsRequest) -> bool {
         let result = known.result;
+        let cells = |model: &Self| model.face.centres.len() * if model.face.mirrored { 2 } else { 1 };
         let has_difference = result.stiffness_local_slope_difference.is_some();
         let touch_is_kept = || {
             let touch = known.model.pairing.first_touch(result.mesh_cycle);
             touch.is_some_and(|touch| self.pairing.leaves_touch_alone(result.mesh_cycle, &touch))
         };
         request.keep_pressure
+            && cells(self) == cells(known.model)
             && result.status.is_usable()
             && result.torque > 0.0
             && has_difference == request.stiffness_difference
@@ -216,11 +219,19 @@ impl<'a> Known<'a> {
         same.next().map(|(result, start)| Self { model, result, start })
     }
 
-    /// The result without the work that it took.
-    fn taken_over(&self) -> PositionResult {
+    /// The result without the work that it took, pressures on the whole of a face that is not mirrored.
+    fn taken_over(&self, face: &FaceCells) -> PositionResult {
         let mut result = self.result.clone();
         let solver = SolveStats { solves: 0, pivots: 0, factorisations: 0, ..result.stats.solver };
         result.stats.solver = solver;
+        if self.model.face.mirrored && !face.mirrored {
+            for patch in &mut result.patches {
+                patch.face.clone_from(&face.centres);
+                for row in &mut patch.pressure {
+                    *row = row.iter().rev().chain(row.iter()).copied().collect();
+                }
+            }
+        }
         result
     }
 }
