@@ -211,10 +211,10 @@ fn body_options(pairing: &Pairing, options: &PairModelOptions, symmetric: bool, 
     }
 }
 
-/// The cracks among a gear's damage.
+/// The cracks of any length among a gear's damage.
 pub(super) fn cracks_of(damage: &[ToothDamage]) -> Vec<(i64, RootCrack)> {
     let cracks = damage.iter().filter_map(|damage| match damage.damage {
-        Damage::Crack(crack) => Some((damage.tooth, crack)),
+        Damage::Crack(crack) if !crack.is_empty() => Some((damage.tooth, crack)),
         _ => None,
     });
     cracks.collect()

@@ -16,6 +16,8 @@ use super::schema::{
 use crate::case::document::Node;
 use crate::case::fault::Fault;
 
+/// Damages named one by one in a legend.
+const MOST_LABELS: usize = 2;
 const MM: f64 = 1e-3;
 const UM: f64 = 1e-6;
 
@@ -147,7 +149,13 @@ fn severity(
         damage[slot].push(ToothDamage { tooth: i64::from(keys.tooth), damage: made? });
         labels.push(label(keys, index));
     }
-    Some(Severity { label: labels.join(", "), damage })
+    // many sections are one shape made of parts
+    let label = if labels.len() > MOST_LABELS {
+        format!("{} and {} more", labels[0], labels.len() - 1)
+    } else {
+        labels.join(", ")
+    };
+    Some(Severity { label, damage })
 }
 
 fn label(damage: &Damage, index: usize) -> String {
