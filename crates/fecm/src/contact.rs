@@ -154,24 +154,33 @@ impl ContactGrid {
         let count = self.face.centres.len();
         let mut total = Mat::zeros(self.size(), self.size());
         let starts = self.starts();
+        let mut stations = Vec::new();
+        // functions along the face of both bodies and all families side by side, at the cells
+        let mut values: Vec<Vec<f64>> = vec![Vec::new(); count];
         for (index, body) in bodies.iter().enumerate() {
-            let stations = self.stations(body, index, tooth_step[index])?;
-            for (family_index, family) in body.families.iter().enumerate() {
-                let functions = family.basis.plane_degrees().len();
-                let values: Vec<Vec<f64>> = self.face.centres.iter().map(|&z| family.basis.plane_values(z)).collect();
-                let psi = Mat::from_fn(count, functions, |j, k| values[j][k]);
-                for (i, observed) in self.pairs.iter().enumerate() {
-                    for (j, loaded) in self.pairs.iter().enumerate().skip(i) {
-                        let tooth = |pair: &PairGrid| pair.pair * tooth_step[index];
-                        let (own, source) = (&stations[i], &stations[j]);
-                        let mut modal =
-                            body.compliance(family_index, (tooth(observed), own.as_slice()), (tooth(loaded), source));
+            stations.push(self.stations(body, index, tooth_step[index])?);
+            for family in &body.families {
+                for (values, &z) in values.iter_mut().zip(&self.face.centres) {
+                    values.extend(family.basis.plane_values(z));
+                }
+            }
+        }
+        let psi = Mat::from_fn(count, values.first().map_or(0, Vec::len), |j, k| values[j][k]);
+        for (i, observed) in self.pairs.iter().enumerate() {
+            for (j, loaded) in self.pairs.iter().enumerate().skip(i) {
+                let mut modal = Vec::new();
+                for (index, body) in bodies.iter().enumerate() {
+                    let at = |k: usize, pair: &PairGrid| (pair.pair * tooth_step[index], stations[index][k].as_slice());
+                    for (family_index, family) in body.families.iter().enumerate() {
+                        let functions = family.basis.plane_degrees().len();
+                        let mut own = body.compliance(family_index, at(i, observed), at(j, loaded));
                         if i == j {
-                            subtract_depth(&mut modal, functions, |d| near.depth(index, family_index, d));
+                            subtract_depth(&mut own, functions, |d| near.depth(index, family_index, d));
                         }
-                        add_expanded(&mut total, [starts[i] * count, starts[j] * count], &modal, psi.as_ref(), i == j);
+                        modal.push((functions, own));
                     }
                 }
+                add_expanded(&mut total, [starts[i] * count, starts[j] * count], &modal, psi.as_ref(), i == j);
             }
         }
         self.add_surface(&mut total, &starts, near);
@@ -222,20 +231,35 @@ fn subtract_depth<'a>(modal: &mut Mat<f64>, functions: usize, depth: impl Fn(usi
     }
 }
 
-/// Adds `(I x Psi) modal (I x Psi)^T`, functions along the face turned into cells, at `at`; of a diagonal block only what lies on or above
-/// the diagonal, row by row of cells.
-fn add_expanded(total: &mut Mat<f64>, at: [usize; 2], modal: &Mat<f64>, psi: MatRef<'_, f64>, is_diagonal: bool) {
-    let (count, functions) = (psi.nrows(), psi.ncols());
-    let (rows, columns) = (modal.nrows() / functions, modal.ncols() / functions);
-    let mut half = Mat::zeros(rows * count, modal.ncols());
-    for i in 0..rows {
-        let source = modal.as_ref().submatrix(i * functions, 0, functions, modal.ncols());
-        let target = half.as_mut().submatrix_mut(i * count, 0, count, modal.ncols());
-        add_product(target, 1.0, psi, source);
+/// Adds the sum of `(I x Psi_m) modal_m (I x Psi_m)^T`, functions along the face turned into cells, at `at`; of a diagonal block only what
+/// lies on or above the diagonal, row by row of cells. `psi` has the `Psi_m` side by side; `modal` says how many functions each has.
+fn add_expanded(
+    total: &mut Mat<f64>,
+    at: [usize; 2],
+    modal: &[(usize, Mat<f64>)],
+    psi: MatRef<'_, f64>,
+    is_diagonal: bool,
+) {
+    let (count, all) = (psi.nrows(), psi.ncols());
+    let Some((functions, first)) = modal.first() else { return };
+    let (rows, columns) = (first.nrows() / functions, first.ncols() / functions);
+    // column `j * all + k`: cells by function `k` of column `j`
+    let mut half = Mat::zeros(rows * count, columns * all);
+    let mut offset = 0;
+    for (functions, modal) in modal {
+        let own = psi.submatrix(0, offset, count, *functions);
+        for j in 0..columns {
+            for i in 0..rows {
+                let source = modal.as_ref().submatrix(i * functions, j * functions, *functions, *functions);
+                let target = half.as_mut().submatrix_mut(i * count, j * all + offset, count, *functions);
+                add_product(target, 1.0, own, source);
+            }
+        }
+        offset += functions;
     }
     for j in 0..columns {
         let height = if is_diagonal { (j + 1) * count } else { rows * count };
-        let source = half.as_ref().submatrix(0, j * functions, height, functions);
+        let source = half.as_ref().submatrix(0, j * all, height, all);
         let target = total.as_mut().submatrix_mut(at[0], at[1] + j * count, height, count);
         add_product(target, 1.0, source, psi.transpose());
     }

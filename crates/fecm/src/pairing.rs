@@ -1,6 +1,6 @@
 //! Tooth pairs of a gear pair in space, as the contact search needs them.
 
-use gear_geom::{Damage, FlankSide, Gear, GearPair, Member, Pit, ToothDamage};
+use gear_geom::{Damage, FlankSide, Gear, GearPair, Member, ToothDamage};
 
 use crate::profile::FlankProfile;
 use crate::search::{OpposedPoints, PlacedFlank, PlacedPair, Placement};
@@ -17,8 +17,8 @@ pub struct Pairing {
     pair: GearPair,
     profiles: [FlankProfile; 2],
     is_modified: bool,
-    /// Pits of the pinion and of the wheel, by tooth in `0..teeth`.
-    pits: [Vec<(i64, Pit)>; 2],
+    /// Damaged surfaces of the pinion and of the wheel, by tooth in `0..teeth`.
+    surfaces: [Vec<(i64, Damage)>; 2],
 }
 
 /// Unloaded gears at first touch.
@@ -49,23 +49,40 @@ impl Pairing {
             pair: pair.clone(),
             profiles: MEMBERS.map(|member| FlankProfile::new(pair.gear(member))),
             is_modified: MEMBERS.iter().any(|&member| pair.gear(member).is_modified()),
-            pits: [Vec::new(), Vec::new()],
+            surfaces: [Vec::new(), Vec::new()],
         }
     }
 
-    /// The same pair with pits on its flanks.
+    /// The same pair with damaged flanks.
     #[must_use]
     pub fn with_damage(mut self, damage: &[Vec<ToothDamage>; 2]) -> Self {
         for (index, list) in damage.iter().enumerate() {
             let teeth = i64::from(self.gear(index).teeth());
-            let pits = list.iter().filter_map(|damage| match &damage.damage {
-                Damage::Pit(pit) => Some((damage.tooth.rem_euclid(teeth), pit.clone())),
-                Damage::Crack(_) => None,
-            });
-            self.pits[index] = pits.collect();
+            let surfaces = list.iter().filter(|damage| damage.damage.is_on_surface());
+            self.surfaces[index] =
+                surfaces.map(|damage| (damage.tooth.rem_euclid(teeth), damage.damage.clone())).collect();
         }
-        self.is_modified |= self.pits.iter().any(|pits| !pits.is_empty());
+        self.is_modified |= self.has_damaged_flanks();
         self
+    }
+
+    /// Whether damage has taken material from a flank.
+    #[must_use]
+    pub fn has_damaged_flanks(&self) -> bool {
+        self.surfaces.iter().any(|surfaces| !surfaces.is_empty())
+    }
+
+    /// Whether both are of the same gears in the same place, damage aside.
+    #[must_use]
+    pub fn is_of_the_gears_of(&self, other: &Self) -> bool {
+        let specs = |pairing: &Self| MEMBERS.map(|member| pairing.pair.gear(member).spec().clone());
+        self.pair.centre_distance() == other.pair.centre_distance() && specs(self) == specs(other)
+    }
+
+    /// Gap (m) that no load closes: positions count as overloaded at a quarter of this deflection.
+    #[must_use]
+    pub fn never(&self) -> f64 {
+        self.pair.base_pitch()
     }
 
     /// The gear pair.
@@ -161,21 +178,42 @@ impl Pairing {
     #[must_use]
     pub fn material_removed(&self, pair: i32, row: &OpposedPoints, z: f64) -> f64 {
         let rolls = [row.pinion_roll, row.wheel_roll];
-        // a gap that no load closes: positions count as overloaded at a quarter of this deflection
-        let never = self.pair.base_pitch();
         let of = |index: usize| {
             let tooth = i64::from(pair) * i64::from(self.tooth_steps()[index]);
-            let gear = self.gear(index);
-            let mut removed = gear.material_removed(tooth, rolls[index], z);
-            if !self.pits[index].is_empty() {
-                let own = tooth.rem_euclid(i64::from(gear.teeth()));
-                let here =
-                    self.pits[index].iter().filter(|(pitted, pit)| *pitted == own && pit.contains(z, rolls[index]));
-                removed += here.map(|(_, pit)| pit.depth.unwrap_or(never)).sum::<f64>();
+            self.gear(index).material_removed(tooth, rolls[index], z)
+        };
+        of(0) + of(1) + self.damage_depth(pair, rolls, z)
+    }
+
+    /// What damage has taken from both flanks of a pair (m) at a roll distance on each and a face position, [`Self::never`] where nothing is
+    /// left. Where damages of a tooth overlap, the deepest counts.
+    #[must_use]
+    pub fn damage_depth(&self, pair: i32, rolls: [f64; 2], z: f64) -> f64 {
+        let of = |index: usize| {
+            if self.surfaces[index].is_empty() {
+                return 0.0;
             }
-            removed
+            let tooth = i64::from(pair) * i64::from(self.tooth_steps()[index]);
+            let tooth = tooth.rem_euclid(i64::from(self.gear(index).teeth()));
+            let own = self.surfaces[index].iter().filter(|(damaged, _)| *damaged == tooth);
+            own.map(|(_, damage)| damage.depth_at(z, rolls[index])).fold(0.0, f64::max).min(self.never())
         };
         of(0) + of(1)
+    }
+
+    /// Whether damage leaves the places alone where a pair without it touches first at a mesh cycle. As damage only takes material away, first
+    /// touch is then the same.
+    #[must_use]
+    pub fn leaves_touch_alone(&self, mesh_cycle: f64, touch: &Touch) -> bool {
+        let half = 0.5 * self.common_facewidth();
+        let least = touch.approaches.iter().map(|approach| approach.gap).fold(f64::INFINITY, f64::min);
+        touch.approaches.iter().filter(|approach| approach.gap == least).all(|approach| {
+            let placed = self.place(approach.pair, mesh_cycle, touch.rotation);
+            let Ok(row) = placed.opposed(approach.offset) else { return false };
+            let rolls = [row.pinion_roll, row.wheel_roll];
+            // crown and slope decide where along the face; damage anywhere on that line may matter
+            face_samples(half).all(|z| self.damage_depth(approach.pair, rolls, z) == 0.0)
+        })
     }
 
     /// First touch of the unloaded gears at a mesh cycle. `None` when no flanks face each other.
@@ -235,14 +273,17 @@ impl Pairing {
 
     /// Least gap along the face at opposite points (m).
     fn gap(&self, pair: i32, row: &OpposedPoints) -> Option<f64> {
-        const FACE_SAMPLES: i32 = 8;
         if !self.is_modified {
             return Some(row.separation);
         }
         let half = 0.5 * self.common_facewidth();
-        let removed = (-FACE_SAMPLES..=FACE_SAMPLES)
-            .map(|k| self.material_removed(pair, row, half * f64::from(k) / f64::from(FACE_SAMPLES)))
-            .min_by(f64::total_cmp)?;
+        let removed = face_samples(half).map(|z| self.material_removed(pair, row, z)).min_by(f64::total_cmp)?;
         Some(row.separation + removed)
     }
+}
+
+/// Places along a face from `-half` to `half` at which least gaps are looked for.
+fn face_samples(half: f64) -> impl Iterator<Item = f64> {
+    const EACH_WAY: i32 = 8;
+    (-EACH_WAY..=EACH_WAY).map(move |k| half * f64::from(k) / f64::from(EACH_WAY))
 }

@@ -13,7 +13,10 @@ use fecm::mesh::{MeshDensity, SectorMesh};
 use fecm::ring::{Arc, ring_compliance};
 use fecm::statics::{PairModel, PairModelOptions, PositionResult, PositionStatus, StaticsRequest};
 use fecm::{FaceModel, FecmError, Material};
-use gear_geom::{CrackLength, Damage, FlankSide, GearPair, Member, Pit, ProfileMeasure, RootCrack, ToothDamage};
+use gear_geom::{
+    BrokenCorner, CrackLength, Damage, FlankSide, Gear, GearPair, GearSpec, MeasuredDeviation, Member, Pit,
+    ProfileMeasure, RootCrack, ToothDamage,
+};
 use nalgebra::Point2;
 
 fn pair() -> GearPair {
@@ -39,25 +42,138 @@ fn pit(tooth: i64, pit: Pit) -> ToothDamage {
     ToothDamage { tooth, damage: Damage::Pit(pit) }
 }
 
-fn solve(model: &PairModel, mesh_cycles: &[f64]) -> Vec<PositionResult> {
-    let request = StaticsRequest {
+/// The same depth all over the flank of tooth 0.
+fn wear(depth: f64) -> ToothDamage {
+    let table = MeasuredDeviation { roll: vec![0.0], face: vec![0.0], removed: vec![vec![depth]] };
+    ToothDamage { tooth: 0, damage: Damage::Wear(table) }
+}
+
+fn corner(at_positive_end: bool, length: f64, height: f64) -> ToothDamage {
+    let corner = BrokenCorner::new(&gear(25), at_positive_end, length, height);
+    ToothDamage { tooth: 0, damage: Damage::BrokenCorner(corner) }
+}
+
+fn request(mesh_cycles: &[f64]) -> StaticsRequest {
+    StaticsRequest {
         mesh_cycles: mesh_cycles.to_vec(),
         torques: vec![TORQUE],
         stiffness_difference: false,
         keep_pressure: true,
-    };
-    model.solve(&request, &()).unwrap().results.remove(0)
+    }
+}
+
+fn solve(model: &PairModel, mesh_cycles: &[f64]) -> Vec<PositionResult> {
+    model.solve(&request(mesh_cycles), &()).unwrap().results.remove(0)
 }
 
 const CYCLES: [f64; 8] = [-1.2, -0.7, -0.4, 0.0, 0.15, 0.45, 0.7, 1.2];
 
 #[test]
-fn invariant_no_crack_and_no_pit_is_healthy_to_the_bit() {
+fn invariant_damage_of_no_size_is_healthy_to_the_bit() {
     for face in [FaceModel::PlaneStrain, FaceModel::Solid { order: 4 }] {
         let healthy = PairModel::new(&pair(), &options(face)).unwrap();
-        let nothing = [vec![crack(0, 0.0), pit(1, Pit { shapes: vec![], depth: None })], vec![]];
+        let nothing = [
+            vec![
+                crack(0, 0.0),
+                pit(1, Pit { shapes: vec![], depth: None }),
+                corner(true, 0.0, 3e-3),
+                corner(true, 3e-3, 0.0),
+            ],
+            vec![],
+        ];
         let undamaged = healthy.with_damage(&nothing).unwrap();
         assert_eq!(solve(&healthy, &CYCLES), solve(&undamaged, &CYCLES));
+    }
+}
+
+#[test]
+fn invariant_wear_all_over_a_flank_is_a_pitch_error() {
+    let depth = 6e-6;
+    let errors: Vec<f64> = (0..25).map(|tooth| if tooth == 0 { depth } else { 0.0 }).collect();
+    let spec = GearSpec { pitch_errors: errors, ..gear(25).spec().clone() };
+    let erroneous = GearPair::new(Gear::new(&spec).unwrap(), gear(31), pair().centre_distance()).unwrap();
+    for face in [FaceModel::PlaneStrain, FaceModel::Solid { order: 4 }] {
+        let healthy = PairModel::new(&pair(), &options(face)).unwrap();
+        let sound = solve(&healthy, &CYCLES);
+        let expected = solve(&PairModel::new(&erroneous, &options(face)).unwrap(), &CYCLES);
+        let ste = |r: &PositionResult| r.static_transmission_error;
+        for (worn, expected) in
+            solve(&healthy.with_damage(&[vec![wear(depth)], vec![]]).unwrap(), &CYCLES).iter().zip(&expected)
+        {
+            // first touch of both is found by search, to 1e-12 m
+            assert!((ste(worn) - ste(expected)).abs() < 1e-11, "{}", worn.mesh_cycle);
+        }
+        assert!(expected.iter().zip(&sound).any(|(worn, sound)| ste(worn) > ste(sound) + 0.3 * depth), "wear is felt");
+        for (nothing, sound) in
+            solve(&healthy.with_damage(&[vec![wear(0.0)], vec![]]).unwrap(), &CYCLES).iter().zip(&sound)
+        {
+            assert!((ste(nothing) - ste(sound)).abs() < 1e-11, "{}", nothing.mesh_cycle);
+        }
+    }
+}
+
+#[test]
+fn invariant_broken_corner_carries_nothing_and_either_end_is_alike() {
+    let healthy = PairModel::new(&pair(), &options(FaceModel::Solid { order: 5 })).unwrap();
+    let cycles = [-0.2, 0.2, 0.4, 0.6, 0.8];
+    let sound = solve(&healthy, &cycles);
+    let [one, other] = [true, false]
+        .map(|end| solve(&healthy.with_damage(&[vec![corner(end, 6e-3, 3e-3)], vec![]]).unwrap(), &cycles));
+    let missing = BrokenCorner::new(&gear(25), true, 6e-3, 3e-3);
+    let mut most = 0.0_f64;
+    for ((one, other), sound) in one.iter().zip(&other).zip(&sound) {
+        let ratio = one.static_transmission_error / other.static_transmission_error;
+        assert!((ratio - 1.0).abs() < 1e-9, "{}: {ratio}", one.mesh_cycle);
+        let increase = one.static_transmission_error / sound.static_transmission_error - 1.0;
+        // starts differ from those of the sound pair: the rotation settles to 1e-5
+        assert!(increase > -2e-5, "{}: {increase}", one.mesh_cycle);
+        most = most.max(increase);
+        for patch in one.patches.iter().filter(|patch| patch.pair == 0) {
+            for (roll, row) in patch.pinion_roll.iter().zip(&patch.pressure) {
+                for (z, pressure) in patch.face.iter().zip(row) {
+                    assert!(*pressure == 0.0 || !missing.contains(*z, *roll));
+                }
+            }
+        }
+    }
+    assert!(most > 0.005, "a corner of a third of the face is felt: {most}");
+}
+
+/// Positions that flank damage leaves alone are taken over from the sound pair; the others are those of a solution of its own.
+#[test]
+fn invariant_solved_from_the_sound_pair() {
+    let healthy = PairModel::new(&pair(), &options(FaceModel::Solid { order: 4 })).unwrap();
+    let cycles: Vec<f64> = (0..24).map(|k| -1.2 + 0.1 * f64::from(k)).collect();
+    let request = request(&cycles);
+    let sound = healthy.solve(&request, &()).unwrap();
+    let roll = pair().pitch_roll();
+    let whole_face = pit(0, ellipse(0.0, roll, 9e-3, 2e-3));
+    let edge = pit(0, ellipse(8e-3, roll, 9e-3, 2e-3));
+    for (damage, must_take_over) in [(whole_face, true), (edge, true), (crack(0, 0.4), false)] {
+        let damaged = healthy.with_damage(&[vec![damage.clone()], vec![]]).unwrap();
+        let own = damaged.solve(&request, &()).unwrap();
+        let helped = damaged.solve_from(&request, (&healthy, &sound), &()).unwrap();
+        let mut taken = 0;
+        for ((own, helped), sound) in own.results[0].iter().zip(&helped.results[0]).zip(&sound.results[0]) {
+            let ratio = helped.static_transmission_error / own.static_transmission_error;
+            // other starts: the rotation settles to 1e-5, cells of another size move the rim of a pit
+            assert!((ratio - 1.0).abs() < 5e-4, "{damage:?} at {}: {ratio}", own.mesh_cycle);
+            // pressures of all positions are those of one face
+            assert_eq!(helped.patches[0].face, own.patches[0].face);
+            if helped.stats.solver.solves == 0 {
+                taken += 1;
+                assert_eq!(helped.static_transmission_error, sound.static_transmission_error);
+                assert_eq!(helped.pairs, sound.pairs);
+                let alike = own.patches[0].cell == sound.patches[0].cell;
+                assert!(!alike || (ratio - 1.0).abs() < 2e-5, "{damage:?} at {}: {ratio}", own.mesh_cycle);
+            } else if must_take_over {
+                let carries = sound.loaded_pairs().any(|loaded| loaded.pair == 0);
+                assert!(carries, "solved again without need at {}", own.mesh_cycle);
+            }
+        }
+        assert_eq!(taken > 8, must_take_over, "{damage:?}: {taken} taken over");
+        let again = damaged.solve_from(&request, (&healthy, &sound), &()).unwrap();
+        assert_eq!(helped.results, again.results);
     }
 }
 

@@ -1,12 +1,13 @@
-//! Damage of single teeth: root cracks and surface pits.
+//! Damage of single teeth: root cracks, surface pits, wear and broken corners.
 //!
-//! A root crack starts on a fillet and runs into the tooth; a pit takes away contact surface. Both are said in the tooth's own terms: fillet
-//! tangent and path for cracks, roll distance and face position for pits. Heights of pits are arc lengths along the flank, or roll
-//! distances ([`ProfileMeasure`]): the two differ by the factor `s / r_b`, some 0.3 to 0.6.
+//! A root crack starts on a fillet and runs into the tooth; the others take away surface, all of it or to some depth ([`Damage::depth_at`]). All are
+//! said in the tooth's own terms: fillet tangent and path for cracks, roll distance and face position on the flank for the rest. Heights on a
+//! flank are arc lengths along it, or roll distances ([`ProfileMeasure`]): the two differ by the factor `s / r_b`, some 0.3 to 0.6.
 
 use nalgebra::Vector2;
 
-use crate::gear::FlankSide;
+use crate::gear::{FlankSide, Gear};
+use crate::modification::MeasuredDeviation;
 
 /// How long a crack is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -188,6 +189,47 @@ impl Pit {
     }
 }
 
+/// A tooth whose tip has broken off at one end of the face, along a plane through three points: on the tip, `length` from the end, and on
+/// both flanks at the end, `height` below the tip. On a flank the break is a straight line (in arc length along the profile).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BrokenCorner {
+    /// End of the face: its position (m), half a facewidth or minus that.
+    pub end: f64,
+    /// What is missing of the tip along the face (m).
+    pub length: f64,
+    /// What is missing of the profile at the end of the face, arc length from the tip (m).
+    pub height: f64,
+    /// Base radius of the gear (m).
+    pub base_radius: f64,
+    /// Roll distance of the tip (m).
+    pub tip_roll: f64,
+}
+
+impl BrokenCorner {
+    /// A corner broken off a tooth of a gear, at the end `z > 0` of the face or the other.
+    #[must_use]
+    pub fn new(gear: &Gear, at_positive_end: bool, length: f64, height: f64) -> Self {
+        let half = 0.5 * gear.facewidth();
+        let end = if at_positive_end { half } else { -half };
+        let tip_roll = gear.roll_distance(gear.tip_radius());
+        Self { end, length, height, base_radius: gear.base_radius(), tip_roll }
+    }
+
+    /// Whether nothing is missing.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.length == 0.0 || self.height == 0.0
+    }
+
+    /// Whether a place of the flank is missing.
+    #[must_use]
+    pub fn contains(&self, face: f64, roll: f64) -> bool {
+        let measure = ProfileMeasure::ArcLength { base_radius: self.base_radius };
+        let below = (measure.at(self.tip_roll) - measure.at(roll)).abs();
+        !self.is_empty() && (self.end - face).abs() / self.length + below / self.height < 1.0
+    }
+}
+
 /// What is wrong with one tooth.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Damage {
@@ -195,6 +237,41 @@ pub enum Damage {
     Crack(RootCrack),
     /// A pit on the working flank.
     Pit(Pit),
+    /// Material worn off the working flank, measured from the sound one; nowhere negative.
+    Wear(MeasuredDeviation),
+    /// A broken tip corner. Nothing touches there any more; the stiffness of what has broken off is left to the tooth.
+    BrokenCorner(BrokenCorner),
+}
+
+impl Damage {
+    /// Material gone from the working flank (m) at a face position and roll distance; infinite where nothing is left to touch.
+    #[must_use]
+    pub fn depth_at(&self, face: f64, roll: f64) -> f64 {
+        match self {
+            Self::Crack(_) => 0.0,
+            Self::Pit(pit) if pit.contains(face, roll) => pit.depth.unwrap_or(f64::INFINITY),
+            Self::BrokenCorner(corner) if corner.contains(face, roll) => f64::INFINITY,
+            Self::Pit(_) | Self::BrokenCorner(_) => 0.0,
+            Self::Wear(wear) => wear.at(roll, face).max(0.0),
+        }
+    }
+
+    /// Whether it changes the surface (and not the body).
+    #[must_use]
+    pub fn is_on_surface(&self) -> bool {
+        !matches!(self, Self::Crack(_))
+    }
+
+    /// Whether it is its own image about mid-face.
+    #[must_use]
+    pub fn is_symmetric(&self) -> bool {
+        match self {
+            Self::Crack(_) => true,
+            Self::Pit(pit) => pit.is_symmetric(),
+            Self::Wear(wear) => wear.is_symmetric(),
+            Self::BrokenCorner(corner) => corner.is_empty(),
+        }
+    }
 }
 
 /// A damaged tooth. Tooth 0 is the one that tooth pair 0 brings into contact; numbers count modulo the number of teeth.

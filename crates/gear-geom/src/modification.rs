@@ -77,7 +77,19 @@ impl MeasuredDeviation {
             && self.removed.iter().all(full)
     }
 
-    fn at(&self, roll: f64, z: f64) -> f64 {
+    /// Whether `z` and `-z` always agree.
+    #[must_use]
+    pub fn is_symmetric(&self) -> bool {
+        let count = self.face.len();
+        let close = |a: f64, b: f64| (a - b).abs() <= 1e-15 + 1e-12 * a.abs();
+        let row_is = |row: &Vec<f64>| (0..count).all(|j| close(row[j], row[count - 1 - j]));
+        count == 1
+            || (0..count).all(|j| close(self.face[j], -self.face[count - 1 - j])) && self.removed.iter().all(row_is)
+    }
+
+    /// Material removed (m) at a roll distance and face position: bilinear, beyond the table that of its edge.
+    #[must_use]
+    pub fn at(&self, roll: f64, z: f64) -> f64 {
         let (i, u) = locate(&self.roll, roll);
         let (j, v) = locate(&self.face, z);
         let value = |i: usize, j: usize| self.removed[i.min(self.roll.len() - 1)][j.min(self.face.len() - 1)];
@@ -140,13 +152,7 @@ impl FlankModification {
     /// Whether `z` and `-z` always agree.
     #[must_use]
     pub fn is_symmetric(&self) -> bool {
-        let table = self.measured.as_ref().is_none_or(|table| {
-            let count = table.face.len();
-            let close = |a: f64, b: f64| (a - b).abs() <= 1e-15 + 1e-12 * a.abs();
-            (0..count).all(|j| close(table.face[j], -table.face[count - 1 - j]))
-                && table.removed.iter().all(|row| (0..count).all(|j| close(row[j], row[count - 1 - j])))
-        });
-        self.lead_slope == 0.0 && table
+        self.lead_slope == 0.0 && self.measured.as_ref().is_none_or(MeasuredDeviation::is_symmetric)
     }
 }
 

@@ -63,6 +63,11 @@ fn sweep_of_cracks_and_pits_leaves_tables_plots_and_grids() {
         ("3d", "[[damage]]\non = \"gear\"\npit.width_mm = [2.0, 8.0]\npit.height_mm = [1.0, 3.0]\n", 2),
         (
             "3d",
+            "[[damage]]\non = \"pinion\"\nwear.depth_um = [4.0, 8.0]\n[[damage]]\non = \"pinion\"\nbroken_corner.length_mm = 4.0\nbroken_corner.height_mm = [1.0, 2.0]\n",
+            2,
+        ),
+        (
+            "3d",
             "[[damage]]\non = \"pinion\"\ncrack.length_mm = 3.0\n[[damage]]\non = \"gear\"\npit.at = \"hpstc\"\npit.width_mm = 4.0\npit.height_mm = 2.0\n",
             1,
         ),
@@ -116,9 +121,22 @@ fn impossible_damage_is_explained_at_its_line() {
             &["pit", "active flank"],
         ),
         ("plane-strain", "[[damage]]\non = \"pinion\"\npit.width_mm = 1.0\npit.height_mm = 1.0\n", &["pit", "3d"]),
-        ("3d", "[[damage]]\non = \"pinion\"\n", &["case.toml:37", "either a crack or a pit"]),
+        ("3d", "[[damage]]\non = \"pinion\"\n", &["case.toml:37", "a crack or a pit or wear or a broken corner"]),
         ("3d", "[[damage]]\non = \"wheel\"\ncrack.length_mm = 1.0\n", &["case.toml:38", "wheel", "gear"]),
         ("3d", "[[damage]]\non = \"gear\"\ncrack.lenght_mm = 1.0\n", &["case.toml:39", "lenght_mm", "length_mm"]),
+        ("3d", "[[damage]]\non = \"gear\"\nwear.depth_um = -1.0\n", &["case.toml:39", "wear.depth_um", "0 to 100000"]),
+        ("3d", "[[damage]]\non = \"gear\"\nwear.scale = 2.0\n", &["case.toml:39", "depth_um or table"]),
+        ("3d", "[[damage]]\non = \"gear\"\nwear.table = \"nothing.csv\"\n", &["case.toml:39", "cannot be read"]),
+        (
+            "3d",
+            "[[damage]]\non = \"gear\"\nbroken_corner.length_mm = 20.0\nbroken_corner.height_mm = 2.0\n",
+            &["case.toml:39", "0 to 16", "facewidth"],
+        ),
+        (
+            "plane-strain",
+            "[[damage]]\non = \"gear\"\nbroken_corner.length_mm = 2.0\nbroken_corner.height_mm = 2.0\n",
+            &["broken corner", "3d"],
+        ),
         ("3d", "[damage]\non = \"gear\"\n", &["case.toml:37", "[[damage]]"]),
         (
             "3d",

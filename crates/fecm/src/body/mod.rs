@@ -17,7 +17,7 @@
 pub mod ring;
 pub mod tooth;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::Mat;
@@ -407,7 +407,8 @@ fn springs(bore: BoreCondition, material: &Material, gear: &Gear) -> Result<(Opt
     }
 }
 
-/// `observed^T matrix loaded` with the stations' weights, functions along the face kept apart.
+/// `observed^T matrix loaded` with the stations' weights, functions along the face kept apart. Stations share few nodes: each column of a
+/// loaded node is first read by all observed stations, once.
 fn contract(
     matrix: &Mat<f64>,
     functions: usize,
@@ -415,28 +416,33 @@ fn contract(
     loaded: &[Station],
     rows: impl Fn(&Station) -> &Vec<(usize, Vector2<f64>)>,
 ) -> Mat<f64> {
-    let mut result = Mat::zeros(observed.len() * functions, loaded.len() * functions);
-    let mut spread = vec![0.0; matrix.nrows()];
-    for (j, station) in loaded.iter().enumerate() {
-        for k in 0..functions {
-            // displacements of all observed nodes by this load
-            spread.fill(0.0);
-            for &(slot, weight) in &station.load {
-                let at = 2 * (slot * functions + k);
-                let columns = [(at, weight.x), (at + 1, weight.y)];
-                for (column, share) in columns {
-                    add_scaled(&mut spread, share, column_slice(matrix, column));
+    let height = observed.len() * functions;
+    let read = |column: usize| -> Vec<f64> {
+        let source = column_slice(matrix, column);
+        let mut target = vec![0.0; height];
+        for (station, target) in observed.iter().zip(target.chunks_exact_mut(functions)) {
+            for &(slot, weight) in rows(station) {
+                let at = 2 * slot * functions;
+                for (value, motion) in target.iter_mut().zip(source[at..at + 2 * functions].chunks_exact(2)) {
+                    *value += weight.x * motion[0] + weight.y * motion[1];
                 }
             }
-            let target = column_slice_mut(&mut result, j * functions + k);
-            for (station, target) in observed.iter().zip(target.chunks_exact_mut(functions)) {
-                for &(slot, weight) in rows(station) {
-                    let at = 2 * slot * functions;
-                    let motions = spread[at..at + 2 * functions].chunks_exact(2);
-                    for (value, motion) in target.iter_mut().zip(motions) {
-                        *value += weight.x * motion[0] + weight.y * motion[1];
-                    }
-                }
+        }
+        target
+    };
+    let slots: BTreeSet<usize> = loaded.iter().flat_map(|station| station.load.iter().map(|(slot, _)| *slot)).collect();
+    let by_slot: BTreeMap<usize, Vec<Vec<f64>>> = slots
+        .into_iter()
+        .map(|slot| (slot, (0..2 * functions).map(|k| read(2 * slot * functions + k)).collect()))
+        .collect();
+    let mut result = Mat::zeros(height, loaded.len() * functions);
+    for (j, station) in loaded.iter().enumerate() {
+        for &(slot, weight) in &station.load {
+            let columns = by_slot[&slot].chunks_exact(2);
+            for (k, pair) in columns.enumerate() {
+                let target = column_slice_mut(&mut result, j * functions + k);
+                add_scaled(target, weight.x, &pair[0]);
+                add_scaled(target, weight.y, &pair[1]);
             }
         }
     }

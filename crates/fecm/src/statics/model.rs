@@ -211,11 +211,11 @@ fn body_options(pairing: &Pairing, options: &PairModelOptions, symmetric: bool, 
     }
 }
 
-/// The cracks among a gear's damage.
-fn cracks_of(damage: &[ToothDamage]) -> Vec<(i64, RootCrack)> {
+/// The cracks of any length among a gear's damage.
+pub(super) fn cracks_of(damage: &[ToothDamage]) -> Vec<(i64, RootCrack)> {
     let cracks = damage.iter().filter_map(|damage| match damage.damage {
-        Damage::Crack(crack) => Some((damage.tooth, crack)),
-        Damage::Pit(_) => None,
+        Damage::Crack(crack) if !crack.is_empty() => Some((damage.tooth, crack)),
+        _ => None,
     });
     cracks.collect()
 }

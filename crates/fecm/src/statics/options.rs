@@ -1,6 +1,6 @@
 //! What a static analysis needs besides the geometry.
 
-use gear_geom::{Damage, ToothDamage};
+use gear_geom::ToothDamage;
 
 use crate::body::BoreCondition;
 use crate::error::FecmError;
@@ -96,10 +96,7 @@ impl PairModelOptions {
     /// Whether all damage is its own image about mid-face.
     #[must_use]
     pub fn damage_is_symmetric(&self) -> bool {
-        self.damage.iter().flatten().all(|damage| match &damage.damage {
-            Damage::Crack(_) => true,
-            Damage::Pit(pit) => pit.is_symmetric(),
-        })
+        self.damage.iter().flatten().all(|damage| damage.damage.is_symmetric())
     }
 
     /// Checks the ranges.

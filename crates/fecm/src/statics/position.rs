@@ -12,8 +12,8 @@ use crate::nearfield::NearField;
 use crate::pairing::Touch;
 use crate::search::{NoCell, OpposedPoints};
 
-/// What one position hands to the next as a start.
-#[derive(Debug, Clone)]
+/// What one position hands to another as a start.
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Start {
     /// Closing rotation since first touch (rad).
     pub closing: f64,
@@ -21,7 +21,9 @@ pub(crate) struct Start {
     pub cell: f64,
     /// Rows on either side of the contact's centre.
     pub reach: i32,
-    /// Active cells: pair relative to the mesh cycle's integer part, row, face cell; ascending.
+    /// Cells along the face.
+    pub columns: usize,
+    /// Cells in contact, or kept from it by a pit alone: pair relative to the mesh cycle's integer part, row, face cell; ascending.
     pub active: Vec<(i32, i32, usize)>,
 }
 
@@ -81,6 +83,8 @@ const COMPLIANCE_TOLERANCE: f64 = 0.1;
 const MOST_UPDATES: usize = 24;
 /// Deflection at which a position counts as overloaded, in base pitches.
 const MOST_DEFLECTION: f64 = 0.25;
+/// Rows beyond those in contact at the start that a pair's grid gets: from one position to the next, contact widens by a row or so.
+const SPARE_ROWS: i32 = 2;
 /// Growth of cells that turn out too small: half an octave, so that positions share near fields.
 const CELL_STEP: f64 = std::f64::consts::SQRT_2;
 impl PairModel {
@@ -142,13 +146,16 @@ impl PairModel {
         };
         rotation = rotation.min(most);
         let mut warm = start.cloned();
+        // rows that were in contact at the start; given up as soon as they turn out too few
+        let known = start.filter(|_| *scope == GridScope::default());
+        let mut spans = known.map_or_else(Vec::new, |start| start.spans(request.mesh_cycle, cell));
         let mut stats = PositionStats::default();
         let mut outcome: Option<Settled> = None;
         // closing rotation at which the compliance was set
         let mut compliance_from = f64::NAN;
         for update in 0..MOST_UPDATES {
             stats.geometry_updates = update;
-            let grid = self.grid(request, touch, rotation, (cell, reach), scope);
+            let grid = self.grid(request, touch, rotation, (cell, reach), scope, &spans);
             if grid.size() == 0 {
                 return Ok(None);
             }
@@ -162,7 +169,8 @@ impl PairModel {
                     grid.compliance(bodies, self.pairing.tooth_steps(), &self.near_field(cell))?
                 }
             };
-            let active = warm.as_ref().map(|warm| to_cells(&grid, request.mesh_cycle, warm));
+            let active =
+                warm.as_ref().map(|warm| to_cells(&grid, request.mesh_cycle, warm, 0.5 * self.pairing.never()));
             let (gaps, arms) = (grid.gaps(), grid.wheel_arms());
             let problem =
                 ContactProblem { compliance: compliance.as_ref(), gap: &gaps, arm: &arms, load: request.torque };
@@ -172,8 +180,8 @@ impl PairModel {
             let grid_rotation = rotation;
             let change = solution.approach;
             rotation += change;
-            let active = from_cells(&grid, request.mesh_cycle, &solution.forces);
-            let start = Start { closing: rotation - no_load, cell, reach, active };
+            let active = from_cells(&grid, request.mesh_cycle, &solution.forces, 0.5 * self.pairing.never());
+            let start = Start { closing: rotation - no_load, cell, reach, columns: grid.face.centres.len(), active };
             warm = Some(start.clone());
             let crowded = grid_is_crowded(&grid, &solution.forces);
             let moved = change.abs() * base_radius > ROTATION_TOLERANCE * (rotation - no_load).abs() * base_radius;
@@ -190,7 +198,9 @@ impl PairModel {
                 settled.status = PositionStatus::Overloaded;
                 break;
             }
-            if crowded && cell < 0.75 * self.widest_cell() {
+            if crowded && !spans.is_empty() {
+                spans.clear();
+            } else if crowded && cell < 0.75 * self.widest_cell() {
                 // the contact is wider than the load along the face made believe: coarser cells resolve it as well
                 cell = on_ladder(CELL_STEP * cell);
             } else if crowded {
@@ -203,7 +213,8 @@ impl PairModel {
         Ok(outcome)
     }
 
-    /// Pairs that the deflection can close, with rows around their nearest approach, the wheel closed by `rotation`.
+    /// Pairs that the deflection can close, the wheel closed by `rotation`, with rows around what is known of their contact (`spans`), else
+    /// around their nearest approach.
     fn grid(
         &self,
         request: &PositionRequest<'_>,
@@ -211,6 +222,7 @@ impl PairModel {
         rotation: f64,
         (cell, reach): (f64, i32),
         scope: &GridScope,
+        spans: &[Span],
     ) -> ContactGrid {
         let mut pairs = Vec::new();
         let deflection = (rotation - touch.rotation).max(0.0) * self.pairing.base_radius(1);
@@ -222,7 +234,11 @@ impl PairModel {
             let pair = approach.pair;
             let placed = self.pairing.place(pair, request.mesh_cycle, rotation);
             let removed = |row: &OpposedPoints, z: f64| self.pairing.material_removed(pair, row, z);
-            let grid = PairGrid::new(pair, placed, cell, approach.offset, reach, &self.face, &removed);
+            let (centre, reach) = match spans.iter().find(|span| span.pair == pair) {
+                Some(span) => (f64::midpoint(span.first, span.last) * cell, span.reach().min(reach)),
+                None => (approach.offset, reach),
+            };
+            let grid = PairGrid::new(pair, placed, cell, centre, reach, &self.face, &removed);
             if !grid.rows.is_empty() {
                 pairs.push(grid);
             }
@@ -343,33 +359,71 @@ impl PairModel {
     }
 }
 
-/// Active cells of a grid by pair, row and column, pairs counted from the position's own.
-fn from_cells(grid: &ContactGrid, mesh_cycle: f64, forces: &[f64]) -> Vec<(i32, i32, usize)> {
+/// Rows in contact on a tooth pair, in cells from the foot.
+struct Span {
+    pair: i32,
+    first: f64,
+    last: f64,
+}
+
+impl Span {
+    /// Rows on either side of the middle, some spare ones with them.
+    fn reach(&self) -> i32 {
+        (0.5 * (self.last - self.first)).ceil() as i32 + SPARE_ROWS
+    }
+}
+
+impl Start {
+    /// Rows in contact of every pair, for cells of another size.
+    fn spans(&self, mesh_cycle: f64, cell: f64) -> Vec<Span> {
+        let own = mesh_cycle.floor() as i32;
+        let ratio = self.cell / cell;
+        let of_pair = |cells: &[(i32, i32, usize)]| {
+            let (first, last) = (cells.first()?, cells.last()?);
+            Some(Span { pair: first.0 + own, first: f64::from(first.1) * ratio, last: f64::from(last.1) * ratio })
+        };
+        self.active.chunk_by(|a, b| a.0 == b.0).filter_map(of_pair).collect()
+    }
+
+    /// Face cell of this start for one of `columns`: of half the face for the whole, where the two differ.
+    fn column(&self, column: usize, columns: usize) -> usize {
+        match columns.checked_sub(self.columns) {
+            None | Some(0) => column,
+            Some(half) if column >= half => column - half,
+            Some(half) => (half - 1 - column).min(self.columns - 1),
+        }
+    }
+}
+
+/// Active cells of a grid by pair, row and column, pairs counted from the position's own. In loaded rows also those with a gap beyond `never`.
+fn from_cells(grid: &ContactGrid, mesh_cycle: f64, forces: &[f64], never: f64) -> Vec<(i32, i32, usize)> {
     let columns = grid.face.centres.len();
     let own = mesh_cycle.floor() as i32;
     let mut cells = Vec::new();
     let mut at = 0;
     for pair in &grid.pairs {
-        for row in 0..pair.rows.len() {
-            for column in 0..columns {
-                if forces[at] > 0.0 {
-                    cells.push((pair.pair - own, pair.first_row + row as i32, column));
-                }
-                at += 1;
+        for (row, gaps) in pair.gaps.iter().enumerate() {
+            let forces = &forces[at..at + columns];
+            at += columns;
+            if forces.iter().all(|&force| force == 0.0) {
+                continue;
             }
+            let active = (0..columns).filter(|&column| forces[column] > 0.0 || gaps[column] >= never);
+            cells.extend(active.map(|column| (pair.pair - own, pair.first_row + row as i32, column)));
         }
     }
     cells
 }
 
-/// The start's active cells on a grid whose cells may have another size.
-fn to_cells(grid: &ContactGrid, mesh_cycle: f64, start: &Start) -> Vec<bool> {
+/// The start's active cells on a grid whose cells may have another size, less those with a gap beyond `never`.
+fn to_cells(grid: &ContactGrid, mesh_cycle: f64, start: &Start, never: f64) -> Vec<bool> {
     let columns = grid.face.centres.len();
     let own = mesh_cycle.floor() as i32;
     let ratio = grid.cell / start.cell;
     let was_active = |pair: &PairGrid, row: usize, column: usize| {
-        let row = f64::from(pair.first_row + row as i32) * ratio;
-        start.active.binary_search(&(pair.pair - own, row.round() as i32, column)).is_ok()
+        let place = f64::from(pair.first_row + row as i32) * ratio;
+        let known = (pair.pair - own, place.round() as i32, start.column(column, columns));
+        pair.gaps[row][column] < never && start.active.binary_search(&known).is_ok()
     };
     let rows = grid.pairs.iter().flat_map(|pair| (0..pair.rows.len()).map(move |row| (pair, row)));
     rows.flat_map(|(pair, row)| (0..columns).map(move |column| was_active(pair, row, column))).collect()

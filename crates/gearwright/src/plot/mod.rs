@@ -8,7 +8,7 @@ pub mod statics;
 use std::path::Path;
 
 use kuva::prelude::{
-    ColorMap, Heatmap, Layout, LegendPosition, LinePlot, Plot, ReferenceLine, ShadedRegion, render_to_png,
+    ColorMap, Heatmap, Layout, LegendPosition, LinePlot, Plot, ReferenceLine, ScatterPlot, ShadedRegion, render_to_png,
     render_to_svg,
 };
 
@@ -116,6 +116,8 @@ pub struct FlankMap {
     pub values: Vec<Vec<f64>>,
     /// Named roll distances (mm).
     pub landmarks: Vec<(String, f64)>,
+    /// Places on the rim of damage: face position and roll distance (mm).
+    pub rim: Vec<(f64, f64)>,
 }
 
 /// Pixels per unit of the PNG files.
@@ -242,7 +244,11 @@ impl FlankMap {
             .with_cell_size(1.0)
             .with_color_map(ColorMap::Inferno)
             .with_legend(self.quantity.clone());
-        let plots: Vec<Plot> = vec![map.into()];
+        let mut plots: Vec<Plot> = vec![map.into()];
+        if !self.rim.is_empty() {
+            let dots = ScatterPlot::new().with_data(self.rim.clone()).with_color("#7fdfff").with_size(1.0);
+            plots.push(dots.into());
+        }
         let mut layout = Layout::auto_from_plots(&plots)
             .with_title(self.title.clone())
             .with_x_label("Face position (mm)")

@@ -163,7 +163,8 @@ fn selection(total: usize, count: usize) -> Vec<usize> {
     (0..count).map(|k| k * (total - 1) / (count - 1)).collect()
 }
 
-/// Largest pressure that each place of the pinion's flank sees over the positions (MPa), on the tooth pairs that `of_interest` picks.
+/// Largest pressure that each place of the pinion's flank sees over the positions (MPa), on the tooth pairs that `of_interest` picks, and the rim
+/// of damage whose depth at a face position and roll distance (m) is `depth`.
 #[must_use]
 pub fn flank_pressure(
     title: &str,
@@ -171,6 +172,7 @@ pub fn flank_pressure(
     pair: &GearPair,
     mirrored: bool,
     of_interest: impl Fn(i32) -> bool,
+    depth: impl Fn(f64, f64) -> f64,
 ) -> Option<FlankMap> {
     const ROWS: usize = 120;
     let landmarks = pair.landmarks(Member::Pinion);
@@ -216,5 +218,28 @@ pub fn flank_pressure(
         roll: (low * 1e3, high * 1e3),
         values,
         landmarks: named.into_iter().filter_map(|(n, l)| l.map(|l| (n.to_owned(), l.roll_distance * 1e3))).collect(),
+        rim: rim([0.5 * span, 0.5 * (high - low)], 0.5 * (low + high), depth),
     })
+}
+
+/// Where damage begins, in steps of a fine grid (mm); `half` the extents along face and profile (m).
+fn rim(half: [f64; 2], middle_roll: f64, depth: impl Fn(f64, f64) -> f64) -> Vec<(f64, f64)> {
+    const STEPS: usize = 240;
+    let along = |k: usize, half: f64| half * (2.0 * (k as f64 + 0.5) / STEPS as f64 - 1.0);
+    let place = |i: usize, j: usize| (along(j, half[0]), middle_roll + along(i, half[1]));
+    let damaged = |i: usize, j: usize| {
+        let (face, roll) = place(i, j);
+        depth(face, roll) > 0.0
+    };
+    let inside: Vec<Vec<bool>> = (0..STEPS).map(|i| (0..STEPS).map(|j| damaged(i, j)).collect()).collect();
+    let mut points = Vec::new();
+    for i in 1..STEPS {
+        for j in 1..STEPS {
+            if inside[i][j] != inside[i][j - 1] || inside[i][j] != inside[i - 1][j] {
+                let (face, roll) = place(i, j);
+                points.push((1e3 * face, 1e3 * roll));
+            }
+        }
+    }
+    points
 }

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use anyhow::{Context, anyhow, bail};
 use fecm::statics::{PairModel, PositionResult, StaticsRequest, StaticsSeries};
+use gear_geom::Member;
 
 use crate::case::SpurPairCase;
 use crate::output::folder::ResultsFolder;
@@ -56,13 +57,13 @@ pub fn run(case: &SpurPairCase, target: &Path, observer: &dyn RunObserver) -> an
         observer.stage(&severity.label);
         // derived from the severity before: what a first unsymmetric one had to make anew is shared by the rest
         let before = damaged.last().map_or(&model, |d: &Damaged| &d.model);
-        let model =
+        let damaged_model =
             before.with_damage(&severity.damage).with_context(|| format!("{} cannot be modelled", severity.label))?;
-        let series = model
-            .solve(&request, &AsObserver(observer))
+        let series = damaged_model
+            .solve_from(&request, (&model, &solved), &AsObserver(observer))
             .with_context(|| format!("the contact with {} cannot be solved", severity.label))?;
-        times.damage += model.stats().condensation_time.as_secs_f64() + series.time.as_secs_f64();
-        damaged.push(Damaged { label: severity.label.clone(), model, series });
+        times.damage += damaged_model.stats().condensation_time.as_secs_f64() + series.time.as_secs_f64();
+        damaged.push(Damaged { label: severity.label.clone(), model: damaged_model, series });
     }
 
     if observer.is_cancelled() {
@@ -115,6 +116,15 @@ impl Damaged {
             options.damage[member].iter().any(|damage| (own - damage.tooth).rem_euclid(teeth) == 0)
         })
     }
+
+    /// Depth of damage (m) at a place of the pinion's flank, on it or on the flank opposite, of any tooth.
+    fn depth_at(&self, face: f64, roll: f64) -> f64 {
+        let rolls = [roll, self.model.pairing().pair().partner_roll(Member::Pinion, roll)];
+        let of = |member: usize| {
+            self.model.options().damage[member].iter().map(move |d| d.damage.depth_at(face, rolls[member]))
+        };
+        of(0).chain(of(1)).fold(0.0, f64::max)
+    }
 }
 
 /// Tables, comparison plots and grids of the damaged pairs.
@@ -155,7 +165,14 @@ fn write_damage(
         )?;
         let heading = format!("Largest pressure on the pinion flank (MPa), {}", worst.label);
         let symmetric = worst.model.stats().symmetric;
-        let map = figures::flank_pressure(&heading, worst_series, &case.pair, symmetric, |pair| worst.touches(pair));
+        let map = figures::flank_pressure(
+            &heading,
+            worst_series,
+            &case.pair,
+            symmetric,
+            |pair| worst.touches(pair),
+            |face, roll| worst.depth_at(face, roll),
+        );
         if let Some(map) = map {
             map.save(&file, "damage_flank_pressure").map_err(|e| anyhow!("plot damage_flank_pressure: {e}"))?;
         }
@@ -234,9 +251,14 @@ fn draw(
     )?;
     save(figures::per_pair(title, "Peak pressure (MPa)", series, origin, |p| p.peak_pressure * 1e-6), "peak_pressure")?;
     save(figures::per_pair(title, "Contact width (mm)", series, origin, |p| p.contact_width * 1e3), "contact_width")?;
-    if let Some(map) =
-        figures::flank_pressure("Largest pressure on the pinion flank (MPa)", series, &case.pair, mirrored, |_| true)
-    {
+    if let Some(map) = figures::flank_pressure(
+        "Largest pressure on the pinion flank (MPa)",
+        series,
+        &case.pair,
+        mirrored,
+        |_| true,
+        |_, _| 0.0,
+    ) {
         map.save(&file, "flank_pressure").map_err(|e| anyhow!("plot flank_pressure: {e}"))?;
     }
     if let Some(map) = map {

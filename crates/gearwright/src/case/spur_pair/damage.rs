@@ -1,13 +1,23 @@
 //! Damage of a case: severities from its sections, with every fault at its key.
 
+use std::path::Path;
+
 use fecm::mesh::SectorMesh;
-use gear_geom::{CrackLength, FlankSide, GearPair, Pit, PitShape, ProfileMeasure, RootCrack, ToothDamage};
+use gear_geom::{
+    CrackLength, FlankSide, Gear, GearPair, MeasuredDeviation, Pit, PitShape, ProfileMeasure, RootCrack, ToothDamage,
+};
 use nalgebra::Vector2;
 
-use super::schema::{Crack, Damage, HeightAlong, LandmarkName, Member, Model, Pit as PitKeys, SpurPair, Values};
+use super::resolve::read_deviation;
+use super::schema::{
+    BrokenCorner, Crack, Damage, FaceEnd, HeightAlong, LandmarkName, Member, Model, Pit as PitKeys, SpurPair, Values,
+    Wear,
+};
 use crate::case::document::Node;
 use crate::case::fault::Fault;
 
+/// Damages named one by one in a legend.
+const MOST_LABELS: usize = 2;
 const MM: f64 = 1e-3;
 const UM: f64 = 1e-6;
 
@@ -20,8 +30,14 @@ pub struct Severity {
     pub damage: [Vec<ToothDamage>; 2],
 }
 
-/// Severities of a case, in order; none for a healthy one.
-pub fn severities(inputs: &SpurPair, pair: &GearPair, document: &Node, faults: &mut Vec<Fault>) -> Vec<Severity> {
+/// Severities of a case, in order; none for a healthy one. Files are looked for in `folder`.
+pub fn severities(
+    inputs: &SpurPair,
+    pair: &GearPair,
+    document: &Node,
+    folder: &Path,
+    faults: &mut Vec<Fault>,
+) -> Vec<Severity> {
     let lists = inputs.damage.iter().flat_map(|damage| values_of(damage).into_iter().map(|(_, values)| values));
     let count = lists.map(|values| if let Values::Each(list) = values { list.len() } else { 1 }).max().unwrap_or(1);
     for (index, damage) in inputs.damage.iter().enumerate() {
@@ -38,7 +54,7 @@ pub fn severities(inputs: &SpurPair, pair: &GearPair, document: &Node, faults: &
     if inputs.damage.is_empty() || !faults.is_empty() {
         return Vec::new();
     }
-    (0..count).filter_map(|k| severity(inputs, pair, k, document, faults)).collect()
+    (0..count).filter_map(|k| severity(inputs, pair, k, document, folder, faults)).collect()
 }
 
 /// Keys that may hold lists.
@@ -48,7 +64,12 @@ fn values_of(damage: &Damage) -> Vec<(&'static str, &Values)> {
         .iter()
         .flat_map(|c| [("crack.length_percent", &c.length_percent), ("crack.length_mm", &c.length_mm)]);
     let pit = damage.pit.iter().flat_map(|p| [("pit.width_mm", &p.width_mm), ("pit.height_mm", &p.height_mm)]);
-    crack.chain(pit).filter_map(|(name, values)| values.as_ref().map(|values| (name, values))).collect()
+    let wear = damage.wear.iter().flat_map(|w| [("wear.depth_um", &w.depth_um), ("wear.scale", &w.scale)]);
+    let optional = crack.chain(pit).chain(wear);
+    let corner = damage.broken_corner.iter().flat_map(|corner| {
+        [("broken_corner.length_mm", &corner.length_mm), ("broken_corner.height_mm", &corner.height_mm)]
+    });
+    optional.filter_map(|(name, values)| values.as_ref().map(|values| (name, values))).chain(corner).collect()
 }
 
 fn at(values: &Values, severity: usize) -> f64 {
@@ -63,6 +84,7 @@ fn severity(
     pair: &GearPair,
     index: usize,
     document: &Node,
+    folder: &Path,
     faults: &mut Vec<Fault>,
 ) -> Option<Severity> {
     let mut damage = [Vec::new(), Vec::new()];
@@ -79,8 +101,9 @@ fn severity(
         if keys.tooth >= gear.teeth() {
             fault("tooth", format!("this gear has teeth 0 to {}", gear.teeth() - 1));
         }
-        let made = match (&keys.crack, &keys.pit) {
-            (Some(crack), None) => {
+        let solid = inputs.analysis.model == Model::Solid;
+        let made = match (&keys.crack, &keys.pit, &keys.wear, &keys.broken_corner) {
+            (Some(crack), None, None, None) => {
                 // the loaded flank's fillet opens; on the other side the faces would press on each other
                 let made = root_crack(crack, pair.working_side(member), index, &mut fault);
                 // the coarsest mesh tells whether the crack stays in the tooth
@@ -91,13 +114,31 @@ fn severity(
                 }
                 made.map(gear_geom::Damage::Crack)
             }
-            (None, Some(_)) if inputs.analysis.model != Model::Solid => {
+            (None, Some(_), None, None) if !solid => {
                 fault("pit", "a pit varies along the face: it needs analysis.model = \"3d\"".into());
                 None
             }
-            (None, Some(keys)) => pit(keys, pair, member, index, &mut fault).map(gear_geom::Damage::Pit),
+            (None, Some(keys), None, None) => pit(keys, pair, member, index, &mut fault).map(gear_geom::Damage::Pit),
+            (None, None, Some(keys), None) => {
+                let made = wear(keys, gear, index, folder, &mut fault);
+                if made.as_ref().is_some_and(|table| !solid && table.face.len() > 1) {
+                    fault("wear.table", "this wear varies along the face: it needs analysis.model = \"3d\"".into());
+                }
+                made.map(gear_geom::Damage::Wear)
+            }
+            (None, None, None, Some(_)) if !solid => {
+                let message = "a broken corner varies along the face: it needs analysis.model = \"3d\"";
+                fault("broken_corner", message.into());
+                None
+            }
+            (None, None, None, Some(keys)) => {
+                broken_corner(keys, gear, index, &mut fault).map(gear_geom::Damage::BrokenCorner)
+            }
             _ => {
-                fault("", "give either a crack or a pit".into());
+                fault(
+                    "",
+                    "give either a crack or a pit or wear or a broken corner, each in a section of its own".into(),
+                );
                 None
             }
         };
@@ -108,21 +149,37 @@ fn severity(
         damage[slot].push(ToothDamage { tooth: i64::from(keys.tooth), damage: made? });
         labels.push(label(keys, index));
     }
-    Some(Severity { label: labels.join(", "), damage })
+    // many sections are one shape made of parts
+    let label = if labels.len() > MOST_LABELS {
+        format!("{} and {} more", labels[0], labels.len() - 1)
+    } else {
+        labels.join(", ")
+    };
+    Some(Severity { label, damage })
 }
 
 fn label(damage: &Damage, index: usize) -> String {
     let show = |values: &Option<Values>| values.as_ref().map(|v| at(v, index));
-    match (&damage.crack, &damage.pit) {
-        (Some(crack), _) => match (show(&crack.length_percent), show(&crack.length_mm)) {
+    if let Some(crack) = &damage.crack {
+        match (show(&crack.length_percent), show(&crack.length_mm)) {
             (Some(percent), _) => format!("crack {percent} %"),
             (_, length) => format!("crack {} mm", length.unwrap_or_default()),
-        },
-        (_, Some(pit)) => match (show(&pit.width_mm), show(&pit.height_mm)) {
+        }
+    } else if let Some(pit) = &damage.pit {
+        match (show(&pit.width_mm), show(&pit.height_mm)) {
             (Some(width), Some(height)) => format!("pit {width} x {height} mm"),
             _ => "pit".into(),
-        },
-        _ => String::new(),
+        }
+    } else if let Some(wear) = &damage.wear {
+        match (show(&wear.depth_um), show(&wear.scale)) {
+            (Some(depth), _) => format!("wear {depth} µm"),
+            (_, Some(scale)) => format!("wear x {scale}"),
+            _ => "wear".into(),
+        }
+    } else if let Some(corner) = &damage.broken_corner {
+        format!("corner {} x {} mm", at(&corner.length_mm, index), at(&corner.height_mm, index))
+    } else {
+        String::new()
     }
 }
 
@@ -230,4 +287,69 @@ fn pit(
         return None;
     }
     Some(Pit { shapes: vec![shape], depth: keys.depth_um.map(|depth| depth * UM) })
+}
+
+fn wear(
+    keys: &Wear,
+    gear: &Gear,
+    index: usize,
+    folder: &Path,
+    fault: &mut impl FnMut(&str, String),
+) -> Option<MeasuredDeviation> {
+    let within = |value: f64, most: f64| (0.0..=most).contains(&value);
+    match (&keys.depth_um, &keys.table) {
+        (Some(depth), None) => {
+            let depth = at(depth, index);
+            if keys.scale.is_some() {
+                fault("wear.scale", "this key goes with wear.table".into());
+                return None;
+            }
+            if !within(depth, 1e5) {
+                fault("wear.depth_um", format!("must be 0 to 100000; {depth} is not"));
+                return None;
+            }
+            Some(MeasuredDeviation { roll: vec![0.0], face: vec![0.0], removed: vec![vec![depth * UM]] })
+        }
+        (None, Some(name)) => {
+            let scale = keys.scale.as_ref().map_or(1.0, |values| at(values, index));
+            if !within(scale, 1e5) {
+                fault("wear.scale", format!("must be 0 to 100000; {scale} is not"));
+                return None;
+            }
+            let mut table = read_deviation(&folder.join(name), gear.base_radius())
+                .map_err(|message| fault("wear.table", message))
+                .ok()?;
+            if let Some(depth) = table.removed.iter().flatten().find(|depth| **depth < 0.0) {
+                fault("wear.table", format!("wear takes material away: {} um is not allowed", depth / UM));
+                return None;
+            }
+            table.removed.iter_mut().flatten().for_each(|depth| *depth *= scale);
+            Some(table)
+        }
+        _ => {
+            fault("wear", "give either depth_um or table".into());
+            None
+        }
+    }
+}
+
+fn broken_corner(
+    keys: &BrokenCorner,
+    gear: &Gear,
+    index: usize,
+    fault: &mut impl FnMut(&str, String),
+) -> Option<gear_geom::BrokenCorner> {
+    let measure = ProfileMeasure::ArcLength { base_radius: gear.base_radius() };
+    let [form, tip] = [gear.form_radius(), gear.tip_radius()].map(|radius| measure.at(gear.roll_distance(radius)));
+    let mut size = |name: &str, values: &Values, most: f64, what: &str| {
+        let value = at(values, index) * MM;
+        if (0.0..=most).contains(&value) {
+            return Some(value);
+        }
+        fault(name, format!("must be 0 to {:.3} ({what}); {} is not", most / MM, value / MM));
+        None
+    };
+    let length = size("broken_corner.length_mm", &keys.length_mm, gear.facewidth(), "the facewidth");
+    let height = size("broken_corner.height_mm", &keys.height_mm, (tip - form).abs(), "the arc length of the flank");
+    Some(gear_geom::BrokenCorner::new(gear, keys.face_end == FaceEnd::Positive, length?, height?))
 }

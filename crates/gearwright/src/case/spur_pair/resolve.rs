@@ -67,7 +67,7 @@ pub fn resolve(mut inputs: SpurPair, document: &Node, folder: &Path) -> Result<S
     let pinion = gears.remove(0);
     match GearPair::new(pinion, wheel, inputs.mesh.centre_distance_mm * MM) {
         Ok(pair) => {
-            let severities = severities(&inputs, &pair, document, &mut faults);
+            let severities = severities(&inputs, &pair, document, folder, &mut faults);
             if !faults.is_empty() {
                 return Err(faults);
             }
@@ -231,7 +231,7 @@ fn modification(
 }
 
 /// Reads a deviation table: face positions (mm) in the first row, roll angles (degrees) in the first column, removed material (um).
-fn read_deviation(file: &Path, base: f64) -> Result<MeasuredDeviation, String> {
+pub(super) fn read_deviation(file: &Path, base: f64) -> Result<MeasuredDeviation, String> {
     let open = csv::ReaderBuilder::new().has_headers(false).comment(Some(b'#')).trim(csv::Trim::All).from_path(file);
     let mut reader = open.map_err(|e| format!("the table cannot be read: {e}"))?;
     let mut table = MeasuredDeviation::default();

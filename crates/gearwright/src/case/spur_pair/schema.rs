@@ -327,6 +327,53 @@ pub struct Damage {
     /// A pit on the working flank (3d only).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pit: Option<Pit>,
+    /// Material worn off the working flank.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wear: Option<Wear>,
+    /// A tip corner broken off at one end of the face (3d only).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub broken_corner: Option<BrokenCorner>,
+}
+
+/// Wear of one tooth: the same depth all over its flank, or a table. Wear of all teeth alike is a `modification.deviation_table`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Wear {
+    /// Depth all over the flank (um); a number, or a list for a sweep. Give this or `table`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub depth_um: Option<Values>,
+    /// CSV file of depths (um), none negative, in the format of `modification.deviation_table`: face positions (mm) in the first row, roll
+    /// angles (degrees) in the first column. A single face position holds all along the face (and for plane models).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub table: Option<String>,
+    /// Factor on the depths of the table; a number, or a list for a sweep. Default 1.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<Values>,
+}
+
+/// A broken tip corner: what a plane cuts off that meets the tip `length_mm` from the end of the face and both flanks, at the end, `height_mm`
+/// below the tip. Nothing touches there any more; the tooth keeps the stiffness of what is missing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct BrokenCorner {
+    /// End of the face: "positive" or "negative" face positions.
+    #[serde(default)]
+    pub face_end: FaceEnd,
+    /// Missing length of the tip along the face (mm); a number, or a list for a sweep.
+    pub length_mm: Values,
+    /// Missing height of the profile at the end of the face, arc length from the tip (mm); a number, or a list for a sweep.
+    pub height_mm: Values,
+}
+
+/// An end of the face.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FaceEnd {
+    /// At positive face positions.
+    #[default]
+    Positive,
+    /// At negative face positions.
+    Negative,
 }
 
 /// Gears of the pair.
