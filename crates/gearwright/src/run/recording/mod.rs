@@ -1,5 +1,6 @@
 //! Condition indicators of a recording, or of a folder of recordings.
 
+pub mod detection;
 pub mod error;
 pub mod judge;
 pub mod measure;
@@ -14,11 +15,12 @@ use anyhow::anyhow;
 use rayon::prelude::*;
 
 use crate::case::RecordingCase;
-use crate::case::recording::resolve::{HealthySet, LimitSource};
+use crate::case::recording::resolve::{DamagedSet, HealthySet, LimitSource};
 use crate::output::folder::ResultsFolder;
-use crate::output::{recording as tables, recording_summary as summary};
+use crate::output::{recording as tables, recording_detection as detection_tables, recording_summary as summary};
 use crate::plot::recording as figures;
 
+use self::detection::Detected;
 use self::error::RecordingError;
 use self::judge::Limits;
 use self::measure::{Measured, measure};
@@ -41,6 +43,17 @@ pub struct Outcome {
     pub alarms: Vec<Alarm>,
     /// Recordings of the healthy set.
     pub healthy: usize,
+    /// Detection of damaged recordings.
+    pub detection: Option<Detection>,
+}
+
+/// Detection of damaged recordings.
+#[derive(Debug)]
+pub struct Detection {
+    /// Recordings of the damaged set.
+    pub damaged: usize,
+    /// What each indicator detects.
+    pub detected: Vec<Detected>,
 }
 
 impl Outcome {
@@ -70,6 +83,13 @@ pub fn run(case: &RecordingCase, target: &Path, observer: &dyn RunObserver) -> a
         tables::trend(&file("trend.csv"), &outcome.entries, &outcome.limits)?;
         tables::alarms(&file("alarms.csv"), &outcome.alarms)?;
     }
+    if let Some(detection) = &outcome.detection {
+        detection_tables::rates(&file("detection.csv"), &detection.detected)?;
+        detection_tables::roc(&file("roc.csv"), &detection.detected)?;
+        if case.detection.as_ref().is_some_and(|plan| plan.severities.is_some()) {
+            detection_tables::severities(&file("detection_over_severity.csv"), &detection.detected)?;
+        }
+    }
     if case.inputs.output.plots {
         for (name, chart) in figures::all(case, &outcome) {
             chart.save(&file, &name).map_err(|e| anyhow!("plot {name}: {e}"))?;
@@ -92,6 +112,34 @@ pub fn run(case: &RecordingCase, target: &Path, observer: &dyn RunObserver) -> a
 pub fn outcome(case: &RecordingCase, observer: &dyn RunObserver) -> Result<Outcome, RecordingError> {
     let is_trend = case.signal.is_dir();
     let files = recordings(&case.signal, "signal.file (--signal)")?;
+    let (count, reset) = (files.len(), &case.memory.reset_before);
+    let known =
+        |name: &&String| files.iter().any(|file| file.file_name().is_some_and(|n| n.to_string_lossy() == **name));
+    if let Some(name) = reset.iter().find(|name| !known(name)) {
+        return Err(RecordingError::ResetBefore { path: case.signal.clone(), name: name.clone() });
+    }
+    let severities = match case.detection.as_ref().and_then(|plan| plan.severities.as_ref()) {
+        Some(path) => Some(detection::severities(path)?),
+        None => None,
+    };
+    let (damaged_files, damaged_last) = match case.detection.as_ref().map(|plan| &plan.damaged) {
+        Some(DamagedSet::Folder(folder)) => (recordings(folder, "detection.damaged (--damaged)")?, 0),
+        Some(DamagedSet::Last(_)) if !is_trend => {
+            let message = "detection.damaged_last (--damaged-last) needs a folder of recordings";
+            return Err(RecordingError::Kind { path: case.signal.clone(), message });
+        }
+        Some(DamagedSet::Last(last)) => {
+            let healthy = match case.limits {
+                LimitSource::Healthy(HealthySet::First(first), _) => first,
+                _ => 0,
+            };
+            if healthy + last > count {
+                return Err(RecordingError::Overlap { path: case.signal.clone(), healthy, damaged: *last, count });
+            }
+            (Vec::new(), *last)
+        }
+        None => (Vec::new(), 0),
+    };
     let healthy_files = match &case.limits {
         LimitSource::Healthy(HealthySet::Folder(folder), _) => recordings(folder, "thresholds.healthy (--healthy)")?,
         LimitSource::Healthy(HealthySet::First(_), _) if !is_trend => {
@@ -120,6 +168,11 @@ pub fn outcome(case: &RecordingCase, observer: &dyn RunObserver) -> Result<Outco
         observer.stage("reading the healthy set (KiB)");
         healthy = all(&healthy_files, false)?;
     }
+    let mut damaged = Vec::new();
+    if !damaged_files.is_empty() {
+        observer.stage("reading the damaged set (KiB)");
+        damaged = all(&damaged_files, false)?;
+    }
     observer.stage(if is_trend { "reading the recordings (KiB)" } else { "reading the recording (KiB)" });
     let mut entries = if is_trend {
         all(&files, false)?
@@ -133,11 +186,21 @@ pub fn outcome(case: &RecordingCase, observer: &dyn RunObserver) -> Result<Outco
         return Err(RecordingError::Unusable { path: case.signal.clone(), count: files.len(), first });
     };
     if is_trend || !healthy.is_empty() {
-        trend::remember(healthy.iter_mut().chain(&mut entries).filter_map(|entry| entry.measured.as_mut().ok()));
+        let known = match &case.limits {
+            LimitSource::Healthy(HealthySet::First(count), _) => Some(*count),
+            LimitSource::Healthy(HealthySet::Folder(_), _) => Some(healthy.len()),
+            LimitSource::Gaussian => None,
+        };
+        let in_order = healthy.iter_mut().chain(&mut entries).filter_map(|entry| entry.measured.as_mut().ok());
+        trend::remember(in_order, &case.memory, known).map_err(|source| RecordingError::Parameter {
+            path: case.signal.clone(),
+            key: "memory",
+            source,
+        })?;
     }
     let usable = |entries: &'_ [Entry]| entries.iter().filter(|entry| entry.measured.is_ok()).count();
     let (limits, healthy) = match &case.limits {
-        LimitSource::Gaussian => (Limits::Gaussian(case.inputs.thresholds.sigmas), 0),
+        LimitSource::Gaussian => (Limits::Gaussian(case.inputs.thresholds.sigmas), &[][..]),
         LimitSource::Healthy(set, rule) => {
             let (set, path) = match set {
                 HealthySet::Folder(path) => (&healthy[..], path),
@@ -147,9 +210,26 @@ pub fn outcome(case: &RecordingCase, observer: &dyn RunObserver) -> Result<Outco
             if found < 2 {
                 return Err(RecordingError::Healthy { path: path.clone(), found });
             }
-            (Limits::of_healthy(set.iter().filter_map(|entry| entry.measured.as_ref().ok()), *rule), found)
+            (Limits::of_healthy(set.iter().filter_map(|entry| entry.measured.as_ref().ok()), *rule), set)
         }
     };
+    let detection = match &case.detection {
+        None => None,
+        Some(plan) => {
+            let (set, path) = match &plan.damaged {
+                DamagedSet::Folder(path) => (&damaged[..], path),
+                DamagedSet::Last(_) => (&entries[count - damaged_last..], &case.signal),
+            };
+            let of_damaged = measured(set);
+            if of_damaged.is_empty() {
+                let first = set.first().and_then(|entry| entry.measured.as_ref().err()).cloned().unwrap_or_default();
+                return Err(RecordingError::Damaged { path: path.clone(), first });
+            }
+            let detected = detection::detect(&measured(healthy), &of_damaged, &limits, severities.as_ref());
+            Some(Detection { damaged: of_damaged.len(), detected })
+        }
+    };
+    let healthy = usable(healthy);
     if is_trend {
         observer.stage("signals of the last recording (KiB)");
         keep_signals(&mut entries[shown], &files[shown], case, observer, passes)?;
@@ -165,7 +245,11 @@ pub fn outcome(case: &RecordingCase, observer: &dyn RunObserver) -> Result<Outco
     } else {
         Vec::new()
     };
-    Ok(Outcome { entries, is_trend, shown, limits, alarms, healthy })
+    Ok(Outcome { entries, is_trend, shown, limits, alarms, healthy, detection })
+}
+
+fn measured(set: &[Entry]) -> Vec<&Measured> {
+    set.iter().filter_map(|entry| entry.measured.as_ref().ok()).collect()
 }
 
 /// Measures a recording again for its signals; its indicators stay as they are, with their memory.
