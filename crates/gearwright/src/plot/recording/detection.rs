@@ -1,4 +1,4 @@
-//! Receiver operating characteristics, and probability of detection over severity with its 95 % interval.
+//! Receiver operating characteristics, and probability of detection over severity (its intervals are in the table).
 
 use crate::case::RecordingCase;
 use crate::plot::{COLOURS, Line, MarkedChart, Pattern};

@@ -67,18 +67,28 @@ fn map(
     lines.retain(|line| line.points.len() > 2);
     let radii = || lines.iter().flat_map(|line| &line.points).map(|point| point.1);
     let (low, high) = (radii().fold(f64::INFINITY, f64::min), radii().fold(f64::NEG_INFINITY, f64::max));
-    let (_, true) = (low, low < f64::INFINITY) else { return None };
+    if lines.is_empty() {
+        return None;
+    }
     // Logarithms may be negative: the centre lies below them all.
     let centre = if low < 0.0 { low.floor() } else { 0.0 };
+    let rim = round_up(high - centre) + centre;
+    // Rings have labels of few decimals.
+    let exponent = if (0.1..1e4).contains(&rim.abs()) { 0 } else { 3 * (rim.abs().log10() / 3.0).floor() as i32 };
+    let scale = 10_f64.powi(-exponent);
+    lines.iter_mut().flat_map(|line| &mut line.points).for_each(|point| point.1 *= scale);
     let name = if logarithm { format!("ln {indicator}") } else { indicator.to_owned() };
-    let unit = match case.inputs.signal.unit.as_str() {
-        unit if !logarithm && !unit.is_empty() => format!(" ({unit})"),
-        _ => String::new(),
+    let unit = match (case.inputs.signal.unit.as_str(), exponent) {
+        ("", 0) => String::new(),
+        _ if logarithm => String::new(),
+        ("", power) => format!(" (1e{power})"),
+        (unit, 0) => format!(" ({unit})"),
+        (unit, power) => format!(" (1e{power} {unit})"),
     };
     Some(PolarChart {
         title: heading(case, &format!("{name} of the {signal} signal{unit} about the housing")),
         lines,
-        radii: (centre, round_up(high - centre) + centre),
+        radii: (centre * scale, rim * scale),
     })
 }
 
@@ -96,11 +106,11 @@ fn rounded(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     found
 }
 
-/// The next of 1, 2, 4, 6, 8 times a power of ten: four rings with short labels.
+/// The next number with short labels on four rings up to it.
 fn round_up(value: f64) -> f64 {
     if !(value > 0.0) {
         return 1.0;
     }
     let power = 10_f64.powi(value.log10().floor() as i32);
-    [1.0, 2.0, 4.0, 6.0, 8.0].iter().map(|f| f * power).find(|rim| *rim >= value).unwrap_or(10.0 * power)
+    [1.0, 1.2, 1.6, 2.0, 4.0, 6.0, 8.0].iter().map(|f| f * power).find(|rim| *rim >= value).unwrap_or(10.0 * power)
 }
