@@ -4,6 +4,7 @@ pub mod detection;
 pub mod error;
 pub mod judge;
 pub mod measure;
+pub mod sets;
 mod source;
 pub mod trend;
 mod turning;
@@ -15,16 +16,16 @@ use anyhow::anyhow;
 use rayon::prelude::*;
 
 use crate::case::RecordingCase;
-use crate::case::recording::resolve::{DamagedSet, HealthySet, LimitSource};
+use crate::case::recording::resolve::{HealthySet, LimitSource};
 use crate::output::folder::ResultsFolder;
 use crate::output::{recording as tables, recording_detection as detection_tables, recording_summary as summary};
 use crate::plot::recording as figures;
 
-use self::detection::Detected;
 use self::error::RecordingError;
 use self::judge::Limits;
 use self::measure::{Measured, measure};
-use self::source::{Progress, recordings};
+use self::sets::{Detection, Files};
+use self::source::Progress;
 use self::trend::{Alarm, Entry};
 use super::{Finished, RunObserver};
 
@@ -45,15 +46,6 @@ pub struct Outcome {
     pub healthy: usize,
     /// Detection of damaged recordings.
     pub detection: Option<Detection>,
-}
-
-/// Detection of damaged recordings.
-#[derive(Debug)]
-pub struct Detection {
-    /// Recordings of the damaged set.
-    pub damaged: usize,
-    /// What each indicator detects.
-    pub detected: Vec<Detected>,
 }
 
 impl Outcome {
@@ -110,44 +102,8 @@ pub fn run(case: &RecordingCase, target: &Path, observer: &dyn RunObserver) -> a
 /// # Errors
 /// Input that gives no indicators.
 pub fn outcome(case: &RecordingCase, observer: &dyn RunObserver) -> Result<Outcome, RecordingError> {
-    let is_trend = case.signal.is_dir();
-    let files = recordings(&case.signal, "signal.file (--signal)")?;
-    let (count, reset) = (files.len(), &case.memory.reset_before);
-    let known =
-        |name: &&String| files.iter().any(|file| file.file_name().is_some_and(|n| n.to_string_lossy() == **name));
-    if let Some(name) = reset.iter().find(|name| !known(name)) {
-        return Err(RecordingError::ResetBefore { path: case.signal.clone(), name: name.clone() });
-    }
-    let severities = match case.detection.as_ref().and_then(|plan| plan.severities.as_ref()) {
-        Some(path) => Some(detection::severities(path)?),
-        None => None,
-    };
-    let (damaged_files, damaged_last) = match case.detection.as_ref().map(|plan| &plan.damaged) {
-        Some(DamagedSet::Folder(folder)) => (recordings(folder, "detection.damaged (--damaged)")?, 0),
-        Some(DamagedSet::Last(_)) if !is_trend => {
-            let message = "detection.damaged_last (--damaged-last) needs a folder of recordings";
-            return Err(RecordingError::Kind { path: case.signal.clone(), message });
-        }
-        Some(DamagedSet::Last(last)) => {
-            let healthy = match case.limits {
-                LimitSource::Healthy(HealthySet::First(first), _) => first,
-                _ => 0,
-            };
-            if healthy + last > count {
-                return Err(RecordingError::Overlap { path: case.signal.clone(), healthy, damaged: *last, count });
-            }
-            (Vec::new(), *last)
-        }
-        None => (Vec::new(), 0),
-    };
-    let healthy_files = match &case.limits {
-        LimitSource::Healthy(HealthySet::Folder(folder), _) => recordings(folder, "thresholds.healthy (--healthy)")?,
-        LimitSource::Healthy(HealthySet::First(_), _) if !is_trend => {
-            let message = "thresholds.healthy_first (--healthy-first) needs a folder of recordings";
-            return Err(RecordingError::Kind { path: case.signal.clone(), message });
-        }
-        _ => Vec::new(),
-    };
+    let files = Files::of(case)?;
+    let is_trend = files.is_trend;
     let passes = turning::passes(case);
     let all = |files: &[PathBuf], keep: bool| -> Result<Vec<Entry>, RecordingError> {
         let progress = Progress::new(observer, files, passes);
@@ -163,27 +119,26 @@ pub fn outcome(case: &RecordingCase, observer: &dyn RunObserver) -> Result<Outco
             })
             .collect()
     };
-    let mut healthy = Vec::new();
-    if !healthy_files.is_empty() {
-        observer.stage("reading the healthy set (KiB)");
-        healthy = all(&healthy_files, false)?;
-    }
-    let mut damaged = Vec::new();
-    if !damaged_files.is_empty() {
-        observer.stage("reading the damaged set (KiB)");
-        damaged = all(&damaged_files, false)?;
-    }
+    let of_set = |files: &[PathBuf], stage| {
+        if files.is_empty() {
+            return Ok(Vec::new());
+        }
+        observer.stage(stage);
+        all(files, false)
+    };
+    let mut healthy = of_set(&files.healthy, "reading the healthy set (KiB)")?;
+    let damaged = of_set(&files.damaged, "reading the damaged set (KiB)")?;
     observer.stage(if is_trend { "reading the recordings (KiB)" } else { "reading the recording (KiB)" });
     let mut entries = if is_trend {
-        all(&files, false)?
+        all(&files.judged, false)?
     } else {
         // One recording: its fault is the run's.
-        let measured = measure(&files[0], case, &Progress::new(observer, &files, passes), true)?;
+        let measured = measure(&files.judged[0], case, &Progress::new(observer, &files.judged, passes), true)?;
         vec![Entry { name: measured.name.clone(), measured: Ok(measured) }]
     };
     let Some(shown) = entries.iter().rposition(|entry| entry.measured.is_ok()) else {
         let first = entries.swap_remove(0).measured.err().unwrap_or_default();
-        return Err(RecordingError::Unusable { path: case.signal.clone(), count: files.len(), first });
+        return Err(RecordingError::Unusable { path: case.signal.clone(), count: files.judged.len(), first });
     };
     if is_trend || !healthy.is_empty() {
         let known = match &case.limits {
@@ -198,41 +153,12 @@ pub fn outcome(case: &RecordingCase, observer: &dyn RunObserver) -> Result<Outco
             source,
         })?;
     }
-    let usable = |entries: &'_ [Entry]| entries.iter().filter(|entry| entry.measured.is_ok()).count();
-    let (limits, healthy) = match &case.limits {
-        LimitSource::Gaussian => (Limits::Gaussian(case.inputs.thresholds.sigmas), &[][..]),
-        LimitSource::Healthy(set, rule) => {
-            let (set, path) = match set {
-                HealthySet::Folder(path) => (&healthy[..], path),
-                HealthySet::First(count) => (&entries[..(*count).min(entries.len())], &case.signal),
-            };
-            let found = usable(set);
-            if found < 2 {
-                return Err(RecordingError::Healthy { path: path.clone(), found });
-            }
-            (Limits::of_healthy(set.iter().filter_map(|entry| entry.measured.as_ref().ok()), *rule), set)
-        }
-    };
-    let detection = match &case.detection {
-        None => None,
-        Some(plan) => {
-            let (set, path) = match &plan.damaged {
-                DamagedSet::Folder(path) => (&damaged[..], path),
-                DamagedSet::Last(_) => (&entries[count - damaged_last..], &case.signal),
-            };
-            let of_damaged = measured(set);
-            if of_damaged.is_empty() {
-                let first = set.first().and_then(|entry| entry.measured.as_ref().err()).cloned().unwrap_or_default();
-                return Err(RecordingError::Damaged { path: path.clone(), first });
-            }
-            let detected = detection::detect(&measured(healthy), &of_damaged, &limits, severities.as_ref());
-            Some(Detection { damaged: of_damaged.len(), detected })
-        }
-    };
-    let healthy = usable(healthy);
+    let (limits, of_healthy) = sets::limits(case, &healthy, &entries)?;
+    let detection = sets::detection(case, &damaged, &entries, &of_healthy, &limits, files.severities.as_ref())?;
+    let healthy = of_healthy.len();
     if is_trend {
         observer.stage("signals of the last recording (KiB)");
-        keep_signals(&mut entries[shown], &files[shown], case, observer, passes)?;
+        keep_signals(&mut entries[shown], &files.judged[shown], case, observer, passes)?;
     }
     let thresholds = &case.inputs.thresholds;
     let (hits, window) = (thresholds.alarm_hits as usize, thresholds.alarm_window as usize);
@@ -246,10 +172,6 @@ pub fn outcome(case: &RecordingCase, observer: &dyn RunObserver) -> Result<Outco
         Vec::new()
     };
     Ok(Outcome { entries, is_trend, shown, limits, alarms, healthy, detection })
-}
-
-fn measured(set: &[Entry]) -> Vec<&Measured> {
-    set.iter().filter_map(|entry| entry.measured.as_ref().ok()).collect()
 }
 
 /// Measures a recording again for its signals; its indicators stay as they are, with their memory.
