@@ -426,6 +426,11 @@ fn analytic_files_by_extension() {
     assert_eq!(rate_of_times(&r.channels[0]).unwrap(), 4.0);
     assert!(rate_of_times(&[0.0, 1.0, 2.0, 9.0]).is_err());
     assert!(rate_of_times(&[0.0, 1.0, 0.5, 3.0]).is_err());
+    for (file, channels) in [("snappy.parquet", 7), ("compressed.mat", 3)] {
+        let mut reader = open(&std::path::Path::new("tests/data").join(file), &TextOptions::default()).unwrap();
+        let r = read_all(reader.as_mut()).unwrap();
+        assert_eq!((r.rate, r.channels.len(), r.channels[0].len()), (Some(5120.0), channels, 100), "{file}");
+    }
     let missing = open(&folder.path().join("no.csv"), &TextOptions::default());
     assert!(matches!(missing, Err(ReadError::File { .. })));
     let unknown = open(&folder.path().join("x.h5"), &TextOptions::default());
