@@ -326,6 +326,128 @@ fn trend_raises_alarms_after_the_healthy_ones_and_tells_what_it_cannot_use() {
     assert_eq!(fm4["verdict"], "alarm");
 }
 
+/// Detection and polar maps: rates, areas and severities against the numbers they are made of.
+#[test]
+fn detection_counts_what_is_above_the_threshold() {
+    let scratch = Scratch::new();
+    let quiet = Holds { noise: 0.1, ..Holds::default() };
+    let mut severities = String::from("recording,severity\n");
+    for k in 0..6_u64 {
+        scratch.record(&format!("healthy/{k}.csv"), 12_000, quiet, 100 + k);
+        // Three without damage, three with a good deal of it.
+        let knock = if k < 3 { 0.0 } else { 0.5 };
+        scratch.record(&format!("damaged/{k}.csv"), 12_000, Holds { knock, ..quiet }, 200 + k);
+        severities.push_str(&format!("{k},{}\n", 100.0 * knock));
+    }
+    scratch.write("severities.csv", &severities);
+    let base =
+        ["hums", "--signal", "damaged", "--rate-hz", "5120", "--teeth", "27", "--tach", "tacho", "--angles-deg", "30"];
+    let sets = ["--healthy", "healthy", "--damaged", "damaged", "--severities", "severities.csv"];
+    let screen = succeed(scratch.path(), &[&base[..], &sets, &["--sigmas", "6"]].concat());
+    assert!(screen.contains("6 damaged against 6 healthy"), "{screen}");
+    let out = scratch.path().join("out/damaged");
+    let number = |row: &BTreeMap<String, String>, column: &str| row[column].parse::<f64>().unwrap();
+    let rates = table(&out.join("detection.csv"));
+    let fm4 = row(&rates, "fm4", "difference");
+    // Six standard deviations: no false alarm of six, no detection of the undamaged, detection of the damaged.
+    assert_eq!((number(fm4, "false_alarm_rate"), number(fm4, "detection_rate")), (0.0, 0.5), "{fm4:?}");
+    assert!(number(fm4, "detection_rate_low") < 0.2 && number(fm4, "detection_rate_high") > 0.8);
+    // The damaged half separates fully, the rest as it falls: between 1/2 and 1.
+    assert!((0.5..=1.0).contains(&number(fm4, "area_under_roc")) && number(fm4, "best_detection_rate") >= 0.5);
+    let values = |folder: &str| -> Vec<f64> {
+        let case = format!("{folder}-alone");
+        let flags = ["hums", "--signal", folder, "--rate-hz", "5120", "--teeth", "27", "--tach", "tacho", "--no-plots"];
+        succeed(scratch.path(), &[&flags[..], &["--out", &case]].concat());
+        let rows = table(&scratch.path().join(case).join("trend.csv"));
+        rows.iter().filter(|r| r["indicator"] == "fm4").map(|r| r["value"].parse().unwrap()).collect()
+    };
+    let (healthy, damaged) = (values("healthy"), values("damaged"));
+    let wins = damaged.iter().flat_map(|d| healthy.iter().map(move |h| f64::from(u8::from(d > h)))).sum::<f64>();
+    assert!((number(fm4, "area_under_roc") - wins / 36.0).abs() < 1e-12);
+    let roc: Vec<_> = table(&out.join("roc.csv")).into_iter().filter(|r| r["indicator"] == "fm4").collect();
+    assert_eq!(roc.len(), 13, "a point for each value, and the corner");
+    let over = table(&out.join("detection_over_severity.csv"));
+    let over: Vec<_> = over.iter().filter(|r| r["indicator"] == "fm4").collect();
+    let found: Vec<_> =
+        over.iter().map(|r| (number(r, "severity"), &r["recordings"][..], number(r, "detection_rate"))).collect();
+    assert_eq!(found, [(0.0, "3", 0.0), (50.0, "3", 1.0)]);
+    for name in ["roc.svg", "detection_over_severity.png", "trend_fm4_difference.svg"] {
+        assert!(out.join(name).exists(), "{name}");
+    }
+
+    // Bad input, one message each.
+    scratch.write("twice.csv", "recording,severity\n1.csv,2\n1.csv,3\n");
+    scratch.write("words.csv", "recording,severity\n1.csv,much\n");
+    scratch.write("columns.csv", "file,size\n1.csv,2\n");
+    let cases: [(&[&str], &[&str]); 8] = [
+        (&["--damaged", "damaged"], &["--healthy", "healthy set"]),
+        (&["--severities", "severities.csv"], &["--severities", "damaged"]),
+        (&["--healthy", "healthy", "--damaged", "nowhere"], &["nowhere", "--damaged"]),
+        (&["--healthy-first", "4", "--damaged-last", "3"], &["4 healthy", "3 damaged", "6"]),
+        (
+            &["--healthy", "healthy", "--damaged", "damaged", "--severities", "twice.csv"],
+            &["twice.csv", "line 3", "twice"],
+        ),
+        (
+            &["--healthy", "healthy", "--damaged", "damaged", "--severities", "words.csv"],
+            &["words.csv", "line 2", "`much`"],
+        ),
+        (
+            &["--healthy", "healthy", "--damaged", "damaged", "--severities", "columns.csv"],
+            &["line 1", "\"recording\""],
+        ),
+        (&["--angles-deg", "0,90"], &["angles_deg", "2 numbers for 1 channels", "\"case\""]),
+    ];
+    for (flags, wanted) in cases {
+        let base = if flags[0] == "--angles-deg" { &base[..9] } else { &base[..] };
+        let output = gearwright(scratch.path(), &[base, flags].concat());
+        let message = text(&output.stderr);
+        assert!(!output.status.success(), "{flags:?} was accepted");
+        for word in wanted {
+            assert!(message.contains(word), "{flags:?}: \"{word}\" is missing in: {message}");
+        }
+    }
+}
+
+/// NA4 with a memory: begun anew, and locked.
+#[test]
+fn memories_begin_anew_and_lock() {
+    let scratch = Scratch::new();
+    for k in 0..9_u64 {
+        // From the sixth on, three times the noise: variances nine times as large.
+        let noise = if k < 5 { 0.1 } else { 0.3 };
+        scratch.record(&format!("runs/{k}.csv"), 12_000, Holds { noise, ..Holds::default() }, 300 + k);
+    }
+    let case = |memory: &str| {
+        format!(
+            "kind = \"recording\"\n[signal]\nfile = \"runs\"\nrate_hz = 5120\n[tachometer]\nchannel = \"tacho\"\n\
+             [gear]\nteeth = 27\n[memory]\n{memory}\n[output]\nplots = false\n"
+        )
+    };
+    scratch.write("case.toml", &case("learn = 5\nlock_sigmas = 8\nreset_before = \"5.csv\""));
+    succeed(scratch.path(), &["hums", "case.toml"]);
+    let rows = table(&scratch.path().join("out/case/trend.csv"));
+    let of = |name: &str| -> Vec<f64> {
+        rows.iter().filter(|r| r["indicator"] == name).map(|r| r["value"].parse().unwrap()).collect()
+    };
+    let (single, running, reset, locked) = (of("na4"), of("na4_running"), of("na4_reset"), of("na4_locked"));
+    assert_eq!(running[..5], reset[..5]);
+    assert_eq!(reset[5], single[5], "the first of a new memory stands alone");
+    assert!(running[5] > 5.0 * single[5], "variance 9 over a mean of (5 + 9) / 6");
+    assert_eq!(locked[..6], reset[..6], "a reset goes for the locked one, too");
+    scratch.write("bad.toml", &case("reset_before = \"55.csv\""));
+    let message = text(&gearwright(scratch.path(), &["hums", "bad.toml"]).stderr);
+    assert!(message.contains("\"55.csv\"") && message.contains("memory.reset_before"), "{message}");
+    scratch.write("case.toml", &case("learn = 5\nlock_sigmas = 8"));
+    succeed(scratch.path(), &["hums", "case.toml"]);
+    let rows = table(&scratch.path().join("out/case/trend.csv"));
+    let locked: Vec<f64> =
+        rows.iter().filter(|r| r["indicator"] == "na4_locked").map(|r| r["value"].parse().unwrap()).collect();
+    // Healthy variances stay the reference: 3 x 81, less where noise is not all of the residual.
+    assert!(locked[5..].iter().all(|v| *v > 100.0), "{locked:?}");
+    assert!(rows.iter().all(|r| r["indicator"] != "na4_reset"));
+}
+
 #[test]
 fn gaps_cost_periods_not_the_recording() {
     let scratch = Scratch::new();
@@ -460,15 +582,32 @@ fn the_how_to_works() {
         wav.write_sample((sample * 8e6) as i32).unwrap();
     }
     wav.finalize().unwrap();
+    let sensors: Vec<Vec<f64>> = (0..4).map(|k| recording(20_480, holds, 50 + k)[0].clone()).collect();
+    let columns: Vec<&[f64]> = sensors.iter().map(Vec::as_slice).chain([&tacho[..]]).collect();
+    scratch.write("sensors.csv", &csv_text("a,b,c,d,tacho", &columns));
+    let mut severities = String::from("recording,severity\n");
+    for k in 0..6_u32 {
+        let holds = Holds { knock: 0.1 * f64::from(k / 2), ..holds };
+        scratch.record(&format!("damaged/{k}.csv"), 10_240, holds, 30 + u64::from(k));
+        severities.push_str(&format!("{k}.csv,{}\n", 10 * (k / 2)));
+    }
+    scratch.write("severities.csv", &severities);
     let mut count = 0;
     for command in page.lines().filter_map(|line| line.strip_prefix("gearwright ")) {
         succeed(scratch.path(), &command.split_whitespace().collect::<Vec<_>>());
         count += 1;
     }
     assert!(count >= 12, "{count} commands");
-    for name in
-        ["rec/indicators.csv", "recordings/trend.csv", "recordings/alarms.csv", "recordings/trend_fm4_difference.svg"]
-    {
+    for name in [
+        "rec/indicators.csv",
+        "recordings/trend.csv",
+        "recordings/alarms.csv",
+        "recordings/trend_fm4_difference.svg",
+        "sensors/polar_fm4_difference.svg",
+        "damaged/roc.svg",
+        "damaged/detection_over_severity.svg",
+        "detection/detection.csv",
+    ] {
         assert!(scratch.path().join("out").join(name).exists(), "{name}");
     }
 }

@@ -6,9 +6,10 @@
 mod common;
 use common::gaussian;
 use hums::io::text::{TextOptions, TextReader};
-use hums::io::{BlockReader, ReadError, Recording, mat, npy, open, rate_of_times, read_all, wav};
+use hums::io::{BlockReader, ReadError, Recording, mat, npy, open, parquet, rate_of_times, read_all, wav};
 use proptest::prelude::*;
-use std::io::Cursor;
+use std::io::{Cursor, Write as _};
+use std::sync::Arc;
 
 fn text(content: &str) -> Result<Recording, ReadError> {
     text_with(content, &TextOptions::default())
@@ -111,7 +112,8 @@ proptest! {
         if let Ok(mut r) = npy::open(Cursor::new(bytes.clone())) {
             let _ = read_all(r.as_mut());
         }
-        let _ = mat::read(Cursor::new(bytes));
+        let _ = read_mat(bytes.clone());
+        let _ = read_parquet(bytes);
     }
 }
 
@@ -273,6 +275,119 @@ fn mat_file(arrays: &[Vec<u8>]) -> Vec<u8> {
     bytes
 }
 
+fn read_mat(bytes: Vec<u8>) -> Result<Recording, ReadError> {
+    read_all(mat::open(Cursor::new(bytes))?.as_mut())
+}
+
+/// An array's element as `-v7` writes it.
+fn compressed(array: &[u8]) -> Vec<u8> {
+    let mut stream = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
+    stream.write_all(array).unwrap();
+    let data = stream.finish().unwrap();
+    [15_u32.to_le_bytes(), (data.len() as u32).to_le_bytes()].concat().into_iter().chain(data).collect()
+}
+
+#[test]
+fn invariant_mat_compressed_or_not_whole_or_in_blocks() {
+    // Two vectors and a matrix by columns, longer than the buffers, read in odd blocks.
+    let n = 40_000;
+    let x = gaussian(5 * n, 3);
+    let arrays = |wrap: &dyn Fn(&[u8]) -> Vec<u8>| {
+        let n = n as i32;
+        mat_file(&[
+            wrap(&mat_array("fs", 1, 1, &[51_200.0])),
+            wrap(&mat_array("left", n, 1, &x[..40_000])),
+            wrap(&mat_array("right", 1, n, &x[40_000..80_000])),
+            wrap(&mat_array("by_columns", n, 2, &x[80_000..160_000])),
+        ])
+    };
+    for bytes in [arrays(&<[u8]>::to_vec), arrays(&compressed)] {
+        let mut reader = mat::open(Cursor::new(bytes.clone())).unwrap();
+        assert_eq!(reader.rate(), Some(51_200.0));
+        assert_eq!(reader.channels(), ["left", "right", "by_columns(1)", "by_columns(2)"]);
+        let mut columns = vec![Vec::new(); 4];
+        while reader.read_block(777, &mut columns).unwrap() > 0 {}
+        for (c, column) in columns.iter().enumerate() {
+            assert!(*column == x[c * n..(c + 1) * n], "channel {c}");
+        }
+        // Broken off, it says so.
+        let cut = read_mat(bytes[..bytes.len() - 1000].to_vec()).unwrap_err().to_string();
+        assert!(cut.contains("element at byte") && cut.contains("the file ends"), "{cut}");
+    }
+    // A stream damaged in its middle tells where.
+    let mut bytes = arrays(&compressed);
+    let middle = bytes.len() - 200_000;
+    bytes[middle..middle + 64].fill(0xff);
+    let fault = read_mat(bytes).unwrap_err().to_string();
+    assert!(fault.contains("\"by_columns("), "{fault}");
+}
+
+#[test]
+fn extreme_mat_of_other_versions_and_sizes() {
+    let says = |bytes: Vec<u8>| read_mat(bytes).unwrap_err().to_string();
+    let mut later = mat_file(&[]);
+    later[124..126].copy_from_slice(&[0, 2]);
+    assert!(says(later).contains("save it with -v7"));
+    assert!(says(vec![0; 200]).contains("neither IM nor MI"));
+    assert!(says(vec![0; 20]).contains("shorter than its header"));
+    let mut wrong = mat_array("x", 4, 1, &[1.0; 4]);
+    wrong[32] = 5; // rows
+    assert!(says(mat_file(&[wrong])).contains("array \"x\" of 5 by 1 numbers of 8 bytes has 32 bytes"));
+    // Big-endian, as older machines wrote.
+    let mut big = b"MATLAB 5.0 MAT-file".to_vec();
+    big.resize(124, b' ');
+    big.extend([0x01, 0x00, b'M', b'I']);
+    for word in [14_u32, 56, 6, 8, 6, 0, 5, 8, 3, 1, 0x0001_0001, 0x6100_0000, 3, 6, 0x0001_0002, 0xffff_0000] {
+        big.extend(word.to_be_bytes());
+    }
+    let r = read_mat(big).unwrap();
+    assert_eq!((r.names, r.channels), (vec!["a".to_owned()], vec![vec![1.0, 2.0, -1.0]]));
+}
+
+#[test]
+fn peer_scipy_mat_and_arrow_parquet() {
+    // Written by scipy and pyarrow: tests/data/recordings.py.
+    let x: Vec<f64> = (0..100).map(|i| f64::from(i * i % 97) / 8.0).collect();
+    for file in ["plain.mat", "compressed.mat"] {
+        let bytes = std::fs::read(format!("tests/data/{file}")).unwrap();
+        let r = read_mat(bytes).unwrap();
+        assert_eq!((r.rate, &r.names[..]), (Some(5120.0), &["case".into(), "pair(1)".into(), "pair(2)".into()][..]));
+        assert!(r.channels[0] == x && r.channels[1] == x, "{file}");
+        assert!(r.channels[2].iter().zip(&x).all(|(a, b)| *a == -b), "{file}");
+    }
+    for codec in ["none", "snappy", "gzip", "lz4", "zstd"] {
+        let r = read_parquet(std::fs::read(format!("tests/data/{codec}.parquet")).unwrap()).unwrap();
+        assert_eq!(r.rate, Some(5120.0));
+        assert_eq!(r.names, ["time", "case", "single", "gaps", "tacho", "counts", "bytes"]);
+        for (i, x) in x.iter().enumerate() {
+            let at = |channel: usize| r.channels[channel][i];
+            // 2024-01-01 and i steps of 1/5120 s to a nanosecond; f64 holds 2.4e-7 s there.
+            assert!((at(0) - 1_704_067_200.0 - i as f64 / 5120.0).abs() < 5e-7, "{codec} {i}");
+            assert_eq!((at(1), at(2)), (*x, *x), "{codec} {i}");
+            assert!(if i % 7 == 3 { at(3).is_nan() } else { at(3) == *x }, "{codec} {i}");
+            assert_eq!((at(4), at(5)), (f64::from(u8::from(i % 10 == 0)), i as f64 * 5e6 - 2.5e9), "{codec} {i}");
+            assert_eq!(at(6), (i % 256) as f64);
+        }
+    }
+}
+
+fn read_parquet(bytes: Vec<u8>) -> Result<Recording, ReadError> {
+    read_all(&mut parquet::ParquetRecording::new(bytes::Bytes::from(bytes), &Arc::default())?)
+}
+
+#[test]
+fn extreme_damaged_parquet_is_read_or_refused() {
+    let bytes = std::fs::read("tests/data/snappy.parquet").unwrap();
+    for cut in (0..bytes.len()).step_by(7) {
+        assert!(matches!(read_parquet(bytes[..cut].to_vec()), Err(ReadError::Format { .. })), "{cut}");
+    }
+    for at in (0..bytes.len()).step_by(5) {
+        let mut damaged = bytes.clone();
+        damaged[at] ^= 0xff;
+        let _ = read_parquet(damaged);
+    }
+}
+
 #[test]
 fn analytic_mat_vectors_and_matrices() {
     let bytes = mat_file(&[
@@ -281,21 +396,22 @@ fn analytic_mat_vectors_and_matrices() {
         mat_array("sensors", 2, 4, &[1.0, 5.0, 2.0, 6.0, 3.0, 7.0, 4.0, 8.0]),
         mat_array("other", 1, 2, &[9.0, 9.0]),
     ]);
-    let r = read_all(&mut mat::read(Cursor::new(bytes.clone())).unwrap()).unwrap();
+    let r = read_mat(bytes.clone()).unwrap();
     assert_eq!(r.rate, Some(5120.0));
     assert_eq!(r.names, ["acc", "sensors(1)", "sensors(2)"]);
     let up = vec![1.0, 2.0, 3.0, 4.0];
     assert_eq!(r.channels, [up.clone(), up, vec![5.0, 6.0, 7.0, 8.0]]);
     for cut in 0..bytes.len() {
-        let _ = mat::read(Cursor::new(bytes[..cut].to_vec()));
+        // Broken off before its last array, it is a shorter recording; anywhere else it is an error.
+        let _ = read_mat(bytes[..cut].to_vec());
     }
     for at in 128..bytes.len() {
         let mut damaged = bytes.clone();
         damaged[at] ^= 0xff;
-        let _ = mat::read(Cursor::new(damaged));
+        let _ = read_mat(damaged);
     }
     assert!(matches!(
-        mat::read(Cursor::new(mat_file(&[mat_array("fs", 1, 1, &[1.0])]))),
+        mat::open(Cursor::new(mat_file(&[mat_array("fs", 1, 1, &[1.0])]))),
         Err(ReadError::Format { .. })
     ));
 }
@@ -310,8 +426,13 @@ fn analytic_files_by_extension() {
     assert_eq!(rate_of_times(&r.channels[0]).unwrap(), 4.0);
     assert!(rate_of_times(&[0.0, 1.0, 2.0, 9.0]).is_err());
     assert!(rate_of_times(&[0.0, 1.0, 0.5, 3.0]).is_err());
+    for (file, channels) in [("snappy.parquet", 7), ("compressed.mat", 3)] {
+        let mut reader = open(&std::path::Path::new("tests/data").join(file), &TextOptions::default()).unwrap();
+        let r = read_all(reader.as_mut()).unwrap();
+        assert_eq!((r.rate, r.channels.len(), r.channels[0].len()), (Some(5120.0), channels, 100), "{file}");
+    }
     let missing = open(&folder.path().join("no.csv"), &TextOptions::default());
     assert!(matches!(missing, Err(ReadError::File { .. })));
-    let unknown = open(&folder.path().join("x.parquet"), &TextOptions::default());
+    let unknown = open(&folder.path().join("x.h5"), &TextOptions::default());
     assert!(matches!(unknown, Err(ReadError::UnknownExtension { .. })));
 }

@@ -190,6 +190,29 @@ fn analytic_simplified_forms_are_the_limit() {
 }
 
 #[test]
+fn peer_dissertation_figure_4_10_sensitivities() {
+    // D 4.6.3: over each range of Figure 4.10 the RMS falls, FM4 and M8A rise.
+    let of = |model: DampedSine, n: f64| simplified_indicators(model.extremum(1), model.log_decrement(), n).unwrap();
+    let in_turn = |model: DampedSine| of(model, 2.0 * model.damped_frequency() * TURN);
+    let steps = |from: f64, to: f64| (0..=20).map(move |k| from + (to - from) * f64::from(k) / 20.0);
+    let damping: Vec<_> = steps(0.01, 0.2).map(|damping| in_turn(DampedSine { damping, ..CRACK_20 })).collect();
+    let frequency: Vec<_> =
+        steps(1000.0, 5000.0).map(|natural_frequency| in_turn(DampedSine { natural_frequency, ..CRACK_20 })).collect();
+    let cycles: Vec<_> = steps(20.0, 160.0).map(|n| of(CRACK_20, n)).collect();
+    for (name, study) in [("damping", &damping), ("frequency", &frequency), ("half cycles", &cycles)] {
+        for pair in study.windows(2) {
+            let (a, b) = (&pair[0], &pair[1]);
+            assert!(b.rms < a.rms && b.fm4 > a.fm4 && b.m8a > a.m8a, "{name}: {a:?} {b:?}");
+        }
+    }
+    // The simplified forms say how: RMS as n^(-1/2), FM4 as n, M8A as n^3.
+    let (first, last) = (&cycles[0], &cycles[20]);
+    close(first.rms / last.rms, 8.0_f64.sqrt(), 1e-12);
+    close(last.fm4 / first.fm4, 8.0, 1e-12);
+    close(last.m8a / first.m8a, 512.0, 1e-12);
+}
+
+#[test]
 fn analytic_fit_recovers_parameters() {
     let rate = 500.0 * 1800.0;
     let y = CRACK_20.samples(13_500, rate).unwrap();

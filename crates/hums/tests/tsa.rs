@@ -3,7 +3,7 @@
 mod common;
 use common::{close, gaussian, max_difference};
 use hums::HumsError;
-use hums::indicator::basic::rms;
+use hums::indicator::basic::{kurtosis, rms};
 use hums::resample::Interpolation;
 use hums::spectrum::{Spectrum, Window};
 use hums::tachometer::{PulseOptions, Shaft};
@@ -159,18 +159,25 @@ fn extreme_gaps_leave_blocks_out() {
 }
 
 #[test]
-fn peer_dissertation_a4_repetition_every_nine_planet_passes() {
-    // D A.4: a record that repeats after three carrier turns (nine planet passes) gives one and
-    // the same planet-pass average for every multiple of nine blocks, and others in between.
-    let per_pass = 64;
+fn peer_dissertation_figure_a5_repetition_every_nine_planet_passes() {
+    // D A.5: a record that repeats after three carrier turns (nine planet passes) gives one and the same average for every
+    // multiple of nine passes, or of three carrier turns, and others in between; so do its RMS and its kurtosis.
+    let (per_pass, passes_per_turn) = (64, 3);
     let pattern = gaussian(9 * per_pass, 77);
     let record: Vec<f64> = (0..10).flat_map(|_| pattern.iter().copied()).collect();
-    let of = |blocks| average_periods(&record, per_pass, Some(blocks)).unwrap().samples;
-    let nine = of(9);
-    for blocks in [18, 27, 81] {
-        assert!(max_difference(&of(blocks), &nine) < 1e-14);
-    }
-    for blocks in [8, 10, 12, 15] {
-        assert!(max_difference(&of(blocks), &nine) > 1e-2);
+    for (period, repeats) in [(per_pass, 9), (passes_per_turn * per_pass, 3)] {
+        let of = |blocks| average_periods(&record, period, Some(blocks)).unwrap().samples;
+        let once = of(repeats);
+        let (once_rms, once_kurtosis) = (rms(&once).unwrap(), kurtosis(&once).unwrap());
+        for multiple in [2, 3, 9] {
+            let more = of(multiple * repeats);
+            assert!(max_difference(&more, &once) < 1e-14);
+            assert!((rms(&more).unwrap() / once_rms - 1.0).abs() < 1e-13);
+            assert!((kurtosis(&more).unwrap() / once_kurtosis - 1.0).abs() < 1e-13);
+        }
+        for blocks in [repeats - 1, repeats + 1, 2 * repeats - 1] {
+            assert!(max_difference(&of(blocks), &once) > 1e-2, "{blocks} of {period}");
+            assert!((rms(&of(blocks)).unwrap() / once_rms - 1.0).abs() > 1e-4, "{blocks} of {period}");
+        }
     }
 }

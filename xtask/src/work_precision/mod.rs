@@ -1,6 +1,7 @@
 //! Error against run time of the numerics on offer, with the defaults marked.
 
 mod dynamics_lumped;
+mod hums;
 mod report;
 mod statics;
 
@@ -11,6 +12,8 @@ pub enum Study {
     Statics,
     /// Integration methods of the lumped-parameter dynamics.
     DynamicsLumped,
+    /// Interpolation of synchronous averages, windows and segments of spectra.
+    Hums,
 }
 
 /// Runs a study and writes its report.
@@ -18,5 +21,6 @@ pub fn run(study: Study) -> anyhow::Result<()> {
     match study {
         Study::Statics => statics::run(),
         Study::DynamicsLumped => dynamics_lumped::run(),
+        Study::Hums => hums::run(),
     }
 }

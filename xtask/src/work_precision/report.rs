@@ -53,9 +53,15 @@ impl Report {
         text.push('\n');
         for entry in &self.entries {
             let mark = if entry.is_default { " (default)" } else { "" };
-            write!(text, "| {} | {}{mark} | {:.3} |", entry.family, entry.setting, entry.time)?;
+            let decimals = if entry.time < 0.1 { 5 } else { 3 };
+            write!(text, "| {} | {}{mark} | {:.decimals$} |", entry.family, entry.setting, entry.time)?;
             for error in &entry.errors {
-                write!(text, " {:.4} % |", 100.0 * error)?;
+                // errors of the order of rounding would all read 0
+                let percent = 100.0 * error;
+                match percent < 5e-5 && percent > 0.0 {
+                    true => write!(text, " {percent:.1e} % |")?,
+                    false => write!(text, " {percent:.4} % |")?,
+                }
             }
             text.push('\n');
         }
@@ -78,7 +84,7 @@ impl Report {
             }
         }
         let patterns = [Pattern::Solid, Pattern::Dashed, Pattern::DashDotted, Pattern::Dotted];
-        let point = |entry: &Entry| (entry.time, (100.0 * entry.errors[index]).max(1e-5));
+        let point = |entry: &Entry| (entry.time, (100.0 * entry.errors[index]).max(1e-8));
         let mut lines: Vec<Line> = families
             .iter()
             .enumerate()

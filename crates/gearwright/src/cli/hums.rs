@@ -19,7 +19,7 @@ pub struct Flags {
     /// Case file of the kind "recording"; or give --signal, --teeth, and --tach or --speed-hz.
     #[arg(conflicts_with = "signal")]
     case: Option<PathBuf>,
-    /// Recording (csv, tsv, txt, dat, asc, wav, npy, mat), or a folder of recordings for a trend.
+    /// Recording (csv, tsv, txt, dat, asc, wav, npy, mat, parquet), or a folder of recordings for a trend.
     #[arg(long, value_name = "FILE|FOLDER")]
     signal: Option<PathBuf>,
     /// Channel to judge, by name or number from 1; may be repeated. Default: all.
@@ -58,6 +58,18 @@ pub struct Flags {
     /// Of a folder of recordings, so many of the first are healthy.
     #[arg(long, requires = "signal")]
     healthy_first: Option<u32>,
+    /// Folder of recordings of the damaged state: rates of detection, ROC.
+    #[arg(long, value_name = "FOLDER", requires = "signal")]
+    damaged: Option<String>,
+    /// Of a folder of recordings, so many of the last are the damaged state.
+    #[arg(long, requires = "signal")]
+    damaged_last: Option<u32>,
+    /// Text file with columns recording and severity: probability of detection over severity.
+    #[arg(long, value_name = "FILE", requires = "signal")]
+    severities: Option<String>,
+    /// Angles of the sensors about the housing (degrees), one for each channel, e.g. 0,90,180: polar maps.
+    #[arg(long, value_name = "A,B,..", value_delimiter = ',', allow_negative_numbers = true, requires = "signal")]
+    angles_deg: Vec<f64>,
     /// Standard errors or deviations from mean to threshold; default 3.
     #[arg(long, requires = "signal")]
     sigmas: Option<f64>,
@@ -110,6 +122,7 @@ impl Flags {
         put(&mut section, "file", Some(file));
         put(&mut section, "channels", (!self.channel.is_empty()).then(|| self.channel.join(",")));
         put(&mut section, "rate_hz", self.rate_hz);
+        put(&mut section, "angles_deg", (!self.angles_deg.is_empty()).then(|| self.angles_deg.clone()));
         put(&mut section, "unit", self.unit.as_deref());
         case.insert("signal".into(), section.into());
 
@@ -153,6 +166,12 @@ impl Flags {
         case.insert("thresholds".into(), section.into());
 
         let mut section = Table::new();
+        put(&mut section, "damaged", self.damaged.as_deref());
+        put(&mut section, "damaged_last", self.damaged_last.map(i64::from));
+        put(&mut section, "severities", self.severities.as_deref());
+        case.insert("detection".into(), section.into());
+
+        let mut section = Table::new();
         put(&mut section, "plots", self.no_plots.then_some(false));
         case.insert("output".into(), section.into());
         Ok(case)
@@ -166,10 +185,11 @@ fn put(section: &mut Table, key: &str, value: Option<impl Into<Value>>) {
 }
 
 /// Keys and the flags that set them.
-const FLAGS: [(&str, &str); 20] = [
+const FLAGS: [(&str, &str); 24] = [
     ("signal.file", "--signal"),
     ("signal.channels", "--channel"),
     ("signal.rate_hz", "--rate-hz"),
+    ("signal.angles_deg", "--angles-deg"),
     ("signal.unit", "--unit"),
     ("title", "--title"),
     ("gear.teeth", "--teeth"),
@@ -187,6 +207,9 @@ const FLAGS: [(&str, &str); 20] = [
     ("thresholds.sigmas", "--sigmas"),
     ("thresholds.quantile", "--quantile"),
     ("thresholds.method", "--healthy, --quantile"),
+    ("detection", "--healthy or --healthy-first"),
+    ("detection.damaged_last", "--damaged-last"),
+    ("detection.severities", "--severities"),
 ];
 
 /// Faults under the names of the flags, without lines: the user has seen no file.

@@ -8,6 +8,7 @@ pub mod geometry;
 pub mod lumped_summary;
 pub mod lumped_tables;
 pub mod recording;
+pub mod recording_detection;
 pub mod recording_summary;
 pub mod summary;
 pub mod tables;

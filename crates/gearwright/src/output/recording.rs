@@ -6,16 +6,17 @@ use crate::run::recording::judge::{Limits, Verdict};
 use crate::run::recording::measure::{Channel, Measured, Row};
 use crate::run::recording::trend::{Alarm, Entry};
 
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     format!("{value:.12e}")
 }
 
-fn optional(value: Option<f64>) -> String {
+pub(super) fn optional(value: Option<f64>) -> String {
     value.map_or(String::new(), number)
 }
 
-/// Value, reason, Gaussian value, threshold, verdict.
-fn judged(channel: &Channel, row: &Row, limits: &Limits) -> [String; 5] {
+/// Value, reason, Gaussian value, threshold or why there is none, verdict.
+fn judged(channel: &Channel, row: &Row, limits: &Limits) -> [String; 6] {
+    let limit = limits.of(&channel.name, row);
     let (value, reason) = match &row.value {
         Ok(value) => (number(*value), String::new()),
         Err(reason) => (String::new(), reason.clone()),
@@ -24,12 +25,13 @@ fn judged(channel: &Channel, row: &Row, limits: &Limits) -> [String; 5] {
         value,
         reason,
         optional(row.nominal),
-        optional(limits.of(&channel.name, row).map(|limit| limit.threshold)),
+        optional(limit.map(|limit| limit.threshold)),
+        if limit.is_none() { limits.why_none(row).to_owned() } else { String::new() },
         limits.verdict(&channel.name, row).map_or("", Verdict::name).to_owned(),
     ]
 }
 
-const JUDGED: [&str; 5] = ["value", "reason", "gaussian_value", "threshold", "verdict"];
+const JUDGED: [&str; 6] = ["value", "reason", "gaussian_value", "threshold", "no_threshold", "verdict"];
 
 /// `indicators.csv`: one row per channel, indicator and signal.
 ///
@@ -97,7 +99,7 @@ pub fn trend(path: &Path, entries: &[Entry], limits: &Limits) -> Result<(), csv:
             }
             Err(reason) => {
                 let mut record = begin.to_vec();
-                record.extend(["", "", "", "", reason, "", "", ""].map(String::from));
+                record.extend(["", "", "", "", reason, "", "", "", ""].map(String::from));
                 table.write_record(record)?;
             }
         }

@@ -35,6 +35,7 @@ pub fn summary(case: &RecordingCase, outcome: &Outcome, seconds: f64) -> Json {
         "shown": outcome.entries.get(outcome.shown).map(|entry| &entry.name),
         "channels": channels,
         "alarms": outcome.alarms,
+        "damaged_recordings": outcome.detection.as_ref().map(|detection| detection.damaged),
         "time_s": seconds,
     })
 }
@@ -164,8 +165,37 @@ pub fn screen(case: &RecordingCase, outcome: &Outcome) -> String {
         let _ = writeln!(text, "and {} more channels in indicators.csv", shown.channels.len() - LINES);
     }
     text.push_str(&alarm_lines(outcome, shown));
+    text.push_str(&detection_lines(outcome));
     text
 }
+
+/// The indicators that tell damaged from healthy best.
+fn detection_lines(outcome: &Outcome) -> String {
+    let Some(detection) = &outcome.detection else { return String::new() };
+    let mut best: Vec<_> = detection.detected.iter().collect();
+    best.sort_by(|a, b| b.roc.area.total_cmp(&a.roc.area));
+    let mut text = format!(
+        "\n{} damaged against {} healthy recordings, best by area under the ROC (detection.csv):\n",
+        detection.damaged, outcome.healthy
+    );
+    for detected in best.iter().take(BEST) {
+        let share = |rate: Option<hums::threshold::Rate>| rate.map_or("-".into(), |r| format!("{:.3}", r.value()));
+        let _ = writeln!(
+            text,
+            "  {} {} ({}): area {:.3}; above the threshold {} of damaged, {} of healthy",
+            detected.channel,
+            detected.indicator,
+            detected.signal,
+            detected.roc.area,
+            share(detected.detection),
+            share(detected.limit.and_then(|limit| limit.false_alarms))
+        );
+    }
+    text
+}
+
+/// Indicators told on the screen for their detection.
+const BEST: usize = 4;
 
 fn alarm_lines(outcome: &Outcome, shown: &Measured) -> String {
     let lines: Vec<String> = if outcome.is_trend {

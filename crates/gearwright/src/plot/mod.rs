@@ -8,8 +8,8 @@ pub mod statics;
 use std::path::Path;
 
 use kuva::prelude::{
-    ColorMap, Heatmap, Layout, LegendPosition, LinePlot, Plot, ReferenceLine, ScatterPlot, ShadedRegion, render_to_png,
-    render_to_svg,
+    ColorMap, Heatmap, Layout, LegendPosition, LinePlot, Plot, PolarMode, PolarPlot, ReferenceLine, ScatterPlot,
+    ShadedRegion, render_to_png, render_to_svg,
 };
 
 /// Line patterns, told apart without colour.
@@ -224,6 +224,39 @@ impl MarkedChart {
             });
         }
         (plots, layout)
+    }
+}
+
+/// Closed lines about a centre.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PolarChart {
+    /// Heading.
+    pub title: String,
+    /// Lines of angle (degrees, anticlockwise from the right) and radius; patterns are not drawn.
+    pub lines: Vec<Line>,
+    /// Radii of the centre and of the rim.
+    pub radii: (f64, f64),
+}
+
+impl PolarChart {
+    /// Writes `name.svg` and `name.png`.
+    ///
+    /// # Errors
+    /// What the file system or the renderer says.
+    pub fn save(&self, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
+        save(|| self.draw(), folder, name)
+    }
+
+    fn draw(&self) -> (Vec<Plot>, Layout) {
+        let mut plot = PolarPlot::new().with_theta_start(90.0).with_clockwise(false);
+        plot = plot.with_r_min(self.radii.0).with_r_max(self.radii.1).with_legend(true);
+        for line in &self.lines {
+            let (angles, radii): (Vec<f64>, Vec<f64>) = line.points.iter().copied().unzip();
+            plot = plot.with_series_labeled(radii, angles, line.name.clone(), PolarMode::Line).with_color(line.colour);
+        }
+        let plots: Vec<Plot> = vec![plot.into()];
+        let layout = Layout::auto_from_plots(&plots).with_title(self.title.clone());
+        (plots, journal(layout).with_legend_position(LegendPosition::OutsideRightTop))
     }
 }
 

@@ -1,11 +1,14 @@
-//! Figures of recordings: signal with its average, order spectrum, difference signal, trends.
+//! Figures of recordings: signal with its average, order spectrum, difference signal, trends; polar maps and detection in the modules.
+
+mod detection;
+mod polar;
 
 use crate::case::RecordingCase;
 use crate::run::recording::Outcome;
 use crate::run::recording::measure::{Channel, Detail, Row};
 use crate::run::recording::trend;
 
-use super::{COLOURS, Chart, Line, Mark, MarkedChart, Pattern};
+use super::{COLOURS, Chart, Line, Mark, MarkedChart, Pattern, PolarChart};
 
 /// Columns of a line chart: more points would not be seen.
 const COLUMNS: usize = 900;
@@ -28,9 +31,38 @@ const TRENDS: [(&str, &str); 9] = [
     ("na4_running", "residual"),
 ];
 
+/// A figure of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Figure {
+    /// Lines over an axis.
+    Chart(MarkedChart),
+    /// Lines about the housing.
+    Polar(PolarChart),
+}
+
+impl Figure {
+    /// Writes `name.svg` and `name.png`.
+    ///
+    /// # Errors
+    /// What the file system or the renderer says.
+    pub fn save(&self, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
+        match self {
+            Self::Chart(chart) => chart.save(folder, name),
+            Self::Polar(chart) => chart.save(folder, name),
+        }
+    }
+}
+
 /// All figures of a run with their names.
 #[must_use]
-pub fn all(case: &RecordingCase, outcome: &Outcome) -> Vec<(String, MarkedChart)> {
+pub fn all(case: &RecordingCase, outcome: &Outcome) -> Vec<(String, Figure)> {
+    let mut figures: Vec<_> = charts(case, outcome).into_iter().map(|(name, c)| (name, Figure::Chart(c))).collect();
+    figures.extend(polar::maps(case, outcome).into_iter().map(|(name, c)| (name, Figure::Polar(c))));
+    figures.extend(detection::charts(case, outcome).into_iter().map(|(name, c)| (name, Figure::Chart(c))));
+    figures
+}
+
+fn charts(case: &RecordingCase, outcome: &Outcome) -> Vec<(String, MarkedChart)> {
     let mut charts = Vec::new();
     let channels = outcome.shown().map(|measured| &measured.channels[..]).unwrap_or_default();
     for (index, channel) in channels.iter().take(CHANNELS).enumerate() {

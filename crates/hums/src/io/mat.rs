@@ -1,85 +1,266 @@
-//! MAT v5 files: vectors and matrices of real numbers, read whole.
+//! MAT v5 files: vectors and matrices of real numbers, compressed or not, read block by block.
 //!
-//! Channels are the arrays of the longest time axis (the longer axis of each array), matrices giving
-//! one a column `name(1)`, `name(2)`, ..; shorter arrays are left out. A scalar named `fs`, `rate`,
-//! `sample_rate`, `samplerate` or `sampling_rate` (any case) is the sampling rate. v7.3 files are HDF5 and not read.
+//! Channels are the arrays of the longest time axis (the longer axis of each array), matrices giving one a column `name(1)`,
+//! `name(2)`, ..; shorter arrays are left out. A scalar named `fs`, `rate`, `rate_hz`, `sample_rate` or the like (any
+//! case) is the sampling rate. v7.3 files are HDF5 and not read.
+//!
+//! Layout: "MAT-File Format" (The MathWorks), level 5: a header of 128 bytes, then elements of a tag (type, bytes) and data; an array
+//! is an element of elements (flags, dimensions, name, numbers), which `-v7` wraps into a zlib stream. Numbers are stored by columns,
+//! so that every channel has a reader of its own: at its place in the file, or, compressed, a decompressor that passes over the
+//! columns before it (k columns in one compressed array are inflated k/2 times; an array each costs nothing).
 
-use super::{MemoryReader, ReadError, Recording};
-use matfile::{MatFile, NumericData};
-use std::io::Read;
+use super::stretch::{Kind, Place, Scalar, Stretch, StretchReader};
+use super::{BlockReader, ReadError, is_rate_name};
+use flate2::read::ZlibDecoder;
+use std::cell::RefCell;
+use std::io::{BufReader, Read, Seek, SeekFrom};
+use std::rc::Rc;
 
-/// Reads a file.
+const MATRIX: u32 = 14;
+const COMPRESSED: u32 = 15;
+/// Bytes before the first element.
+const HEADER: u64 = 128;
+/// Bytes of a compressed stream read at a time.
+const BUFFER: usize = 1 << 15;
+/// Longest name of an array (63 in the present program), and most dimensions.
+const LONGEST: usize = 4096;
+
+/// An array of real numbers with two axes.
+struct Array {
+    name: String,
+    rows: u64,
+    columns: u64,
+    scalar: Scalar,
+    /// First number, in bytes from the start of the array's element (inflated, if it is compressed).
+    start: u64,
+}
+
+/// Where an array's element lies.
+#[derive(Clone, Copy)]
+struct Spot {
+    at: u64,
+    compressed: bool,
+}
+
+impl Spot {
+    fn source<R: Read + Seek + 'static>(self, file: &Rc<RefCell<R>>) -> Box<dyn Read> {
+        let place = Place::new(file, self.at);
+        if self.compressed {
+            Box::new(ZlibDecoder::new(BufReader::with_capacity(BUFFER, place)))
+        } else {
+            Box::new(place)
+        }
+    }
+}
+
+/// Opens a file.
 ///
 /// # Errors
-/// [`ReadError::Format`] when it is not MAT v5, or has no array of real numbers.
-pub fn read<R: Read>(source: R) -> Result<MemoryReader, ReadError> {
-    let file = MatFile::parse(source).map_err(|e| mat_error(e.to_string()))?;
-    let mut rate = None;
-    let mut arrays = Vec::new();
-    for array in file.arrays() {
-        let Some(values) = real(array.data()) else {
-            continue;
-        };
-        let [rows, columns] = array.size()[..] else {
-            continue;
-        };
-        if rows.checked_mul(columns) != Some(values.len()) || values.is_empty() {
-            continue;
+/// [`ReadError::Format`] when it is not MAT v5, is damaged, or has no array of real numbers.
+pub fn open<R: Read + Seek + 'static>(mut source: R) -> Result<Box<dyn BlockReader>, ReadError> {
+    let length = source.seek(SeekFrom::End(0))?;
+    source.seek(SeekFrom::Start(0))?;
+    let big = header(&mut source, length)?;
+    let file = Rc::new(RefCell::new(source));
+    let (mut rate, mut arrays) = (None, Vec::new());
+    let mut at = HEADER;
+    while at + 8 <= length {
+        let mut place = Place::new(&file, at);
+        let tag = Tag::read(&mut place, big).map_err(|e| broken(at, &e.to_string()))?;
+        let (kind, bytes) = (tag.kind, tag.bytes);
+        let data = at + 8;
+        if bytes > length - data {
+            let reason =
+                format!("its element is {bytes} bytes long, the file ends {} bytes after its tag", length - data);
+            return Err(broken(at, &reason));
         }
-        if values.len() == 1 {
-            let names = ["fs", "rate", "sample_rate", "samplerate", "sampling_rate"];
-            let name = array.name().to_ascii_lowercase();
-            if names.contains(&name.as_str()) && values[0] > 0.0 && values[0].is_finite() {
-                rate = Some(values[0]);
+        let spot = Spot { at: if kind == COMPRESSED { data } else { at }, compressed: kind == COMPRESSED };
+        if kind == COMPRESSED || kind == MATRIX {
+            let mut source = Counted { source: spot.source(&file), count: 0 };
+            if let Some(array) = array(&mut source, big).map_err(|reason| broken(at, &reason))? {
+                if array.rows * array.columns > 1 {
+                    arrays.push((spot, array));
+                } else if is_rate_name(&array.name) {
+                    let mut bytes = vec![0; array.scalar.size];
+                    source.source.read_exact(&mut bytes).map_err(|e| broken(at, &e.to_string()))?;
+                    rate = Some(array.scalar.value(&bytes)).filter(|r| *r > 0.0 && r.is_finite()).or(rate);
+                }
             }
-            continue;
         }
-        arrays.push((array.name().to_owned(), rows, columns, values));
+        // Compressed elements are not padded; others say their padded length.
+        at = data + bytes;
     }
-    let Some(samples) = arrays.iter().map(|a| a.1.max(a.2)).max() else {
+    let Some(samples) = arrays.iter().map(|(_, a)| a.rows.max(a.columns)).max() else {
         return Err(mat_error("no vector or matrix of real numbers".into()));
     };
-    let mut recording = Recording { names: Vec::new(), rate, channels: Vec::new() };
-    for (name, rows, columns, values) in arrays {
-        if rows.max(columns) != samples {
-            continue;
+    let (mut names, mut stretches) = (Vec::new(), Vec::new());
+    for (spot, array) in arrays.iter().filter(|(_, a)| a.rows.max(a.columns) == samples) {
+        let count = array.rows.min(array.columns);
+        if names.len() as u64 + count > MOST_CHANNELS {
+            return Err(mat_error(format!("more than {MOST_CHANNELS} channels")));
         }
-        let count = rows.min(columns);
-        for c in 0..count {
-            // Storage is by columns.
-            recording.channels.push(if rows >= columns {
-                values[c * rows..(c + 1) * rows].to_vec()
-            } else {
-                values.iter().skip(c).step_by(rows).copied().collect()
+        names.extend((1..=count).map(|c| if count == 1 { array.name.clone() } else { format!("{}({c})", array.name) }));
+        let by_columns = array.rows >= array.columns;
+        let per_stretch = array.rows * array.scalar.size as u64;
+        let parts = if by_columns { count } else { 1 };
+        for c in 0..parts {
+            stretches.push(Stretch {
+                skip: if spot.compressed { array.start + c * per_stretch } else { 0 },
+                source: if spot.compressed {
+                    spot.source(&file)
+                } else {
+                    Box::new(Place::new(&file, spot.at + array.start + c * per_stretch))
+                },
+                scalar: array.scalar,
+                width: if by_columns { 1 } else { count as usize },
+                checked: spot.compressed && c + 1 == parts,
             });
-            recording.names.push(if count == 1 { name.clone() } else { format!("{name}({})", c + 1) });
         }
     }
-    Ok(MemoryReader::new(recording))
+    Ok(Box::new(StretchReader::new(FORMAT, names, rate, stretches, samples)))
 }
+
+/// Channels at most.
+const MOST_CHANNELS: u64 = 65_536;
+
+const FORMAT: &str = "MAT v5";
 
 fn mat_error(reason: String) -> ReadError {
-    ReadError::Format { format: "MAT v5", reason }
+    ReadError::Format { format: FORMAT, reason }
 }
 
-/// Values of a real array; `None` for a complex one.
-fn real(data: &NumericData) -> Option<Vec<f64>> {
-    macro_rules! wide {
-        ($($kind:ident),*) => {
-            match data {
-                NumericData::Double { real, imag: None } => Some(real.clone()),
-                $(NumericData::$kind { real, imag: None } => {
-                    Some(real.iter().map(|x| f64::from(*x)).collect())
-                })*
-                NumericData::Int64 { real, imag: None } => {
-                    Some(real.iter().map(|x| *x as f64).collect())
-                }
-                NumericData::UInt64 { real, imag: None } => {
-                    Some(real.iter().map(|x| *x as f64).collect())
-                }
-                _ => None,
-            }
-        };
+fn broken(at: u64, reason: &str) -> ReadError {
+    mat_error(format!("element at byte {at}: {reason}"))
+}
+
+/// Whether numbers begin with their most significant byte.
+fn header<R: Read>(source: &mut R, length: u64) -> Result<bool, ReadError> {
+    let mut head = [0; HEADER as usize];
+    if length < HEADER {
+        return Err(mat_error(format!("{length} bytes long, shorter than its header of {HEADER}")));
     }
-    wide!(Single, Int8, UInt8, Int16, UInt16, Int32, UInt32)
+    source.read_exact(&mut head)?;
+    let big = match &head[126..] {
+        b"IM" => false,
+        b"MI" => true,
+        _ => return Err(mat_error("bytes 127 and 128 are neither IM nor MI (a MAT v4 file, or no MAT file)".into())),
+    };
+    let version = if big { [head[124], head[125]] } else { [head[125], head[124]] };
+    match version {
+        [1, _] => Ok(big),
+        [2, _] => Err(mat_error("this is v7.3 (HDF5); save it with -v7".into())),
+        [a, b] => Err(mat_error(format!("version {a}.{b}, known is 1.0"))),
+    }
+}
+
+/// Counts what is read.
+struct Counted {
+    source: Box<dyn Read>,
+    count: u64,
+}
+
+impl Read for Counted {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.source.read(buffer)?;
+        self.count += count as u64;
+        Ok(count)
+    }
+}
+
+/// Tag of an element.
+struct Tag {
+    kind: u32,
+    bytes: u64,
+    /// Data of a small element, which are part of its tag.
+    small: Option<[u8; 4]>,
+}
+
+impl Tag {
+    fn read(source: &mut impl Read, big: bool) -> std::io::Result<Self> {
+        let mut raw = [0; 8];
+        source.read_exact(&mut raw)?;
+        let [a, b, c, d, e, f, g, h] = raw;
+        let word = |bytes| if big { u32::from_be_bytes(bytes) } else { u32::from_le_bytes(bytes) };
+        let (kind, rest) = (word([a, b, c, d]), [e, f, g, h]);
+        Ok(match kind >> 16 {
+            0 => Self { kind, bytes: word(rest).into(), small: None },
+            bytes => Self { kind: kind & 0xffff, bytes: bytes.into(), small: Some(rest) },
+        })
+    }
+
+    /// The element's data, padding passed over.
+    fn data(&self, source: &mut impl Read) -> Result<Vec<u8>, String> {
+        let bytes = usize::try_from(self.bytes).unwrap_or(usize::MAX);
+        if bytes > LONGEST {
+            return Err(format!("{bytes} bytes of dimensions or name, at most {LONGEST} are allowed"));
+        }
+        if let Some(small) = self.small {
+            return small.get(..bytes).map(<[u8]>::to_vec).ok_or_else(|| format!("{bytes} bytes in a tag of 4"));
+        }
+        let mut data = vec![0; bytes.next_multiple_of(8)];
+        source.read_exact(&mut data).map_err(|e| e.to_string())?;
+        data.truncate(bytes);
+        Ok(data)
+    }
+}
+
+/// Reads an array's element up to its numbers; `None` for one that is no matrix of real numbers.
+fn array(source: &mut Counted, big: bool) -> Result<Option<Array>, String> {
+    let tag = |source: &mut Counted| Tag::read(source, big).map_err(|e| e.to_string());
+    let word = |bytes: &[u8]| match (bytes.first_chunk().copied(), big) {
+        (Some(four), true) => u32::from_be_bytes(four),
+        (Some(four), false) => u32::from_le_bytes(four),
+        (None, _) => 0,
+    };
+    let outer = tag(source)?;
+    if outer.kind != MATRIX || outer.bytes < 8 {
+        return Ok(None);
+    }
+    let flags = tag(source)?.data(source)?;
+    let (class, complex) = (word(&flags) & 0xff, word(&flags) & 0x800 != 0);
+    // Double, single and whole numbers of 8 to 64 bits; others are texts, cells, structures, sparse.
+    if !(6..=15).contains(&class) || complex {
+        return Ok(None);
+    }
+    let axes = tag(source)?.data(source)?;
+    let axes: Vec<u64> = axes.chunks_exact(4).map(|four| word(four).into()).collect();
+    let name = tag(source)?.data(source)?;
+    let name = String::from_utf8_lossy(&name).into_owned();
+    let [rows, columns] = axes[..] else { return Ok(None) };
+    if rows == 0 || columns == 0 {
+        return Ok(None);
+    }
+    let numbers = tag(source)?;
+    let (kind, size) = match numbers.kind {
+        1 => (Kind::Signed, 1),
+        2 => (Kind::Unsigned, 1),
+        3 => (Kind::Signed, 2),
+        4 => (Kind::Unsigned, 2),
+        5 => (Kind::Signed, 4),
+        6 => (Kind::Unsigned, 4),
+        7 => (Kind::Float, 4),
+        9 => (Kind::Float, 8),
+        12 => (Kind::Signed, 8),
+        13 => (Kind::Unsigned, 8),
+        other => return Err(format!("array \"{name}\" holds numbers of the unknown type {other}")),
+    };
+    let scalar = Scalar { kind, size, big };
+    if source.count.saturating_add(numbers.bytes) > outer.bytes.saturating_add(16) {
+        return Err(format!(
+            "array \"{name}\" says {} bytes of numbers in an element of {}",
+            numbers.bytes, outer.bytes
+        ));
+    }
+    if rows.checked_mul(columns).and_then(|n| n.checked_mul(size as u64)) != Some(numbers.bytes) {
+        return Err(format!(
+            "array \"{name}\" of {rows} by {columns} numbers of {size} bytes has {} bytes",
+            numbers.bytes
+        ));
+    }
+    // A small element's numbers stand in its tag.
+    let start = source.count - if numbers.small.is_some() { 4 } else { 0 };
+    if let Some(small) = numbers.small {
+        source.source = Box::new(std::io::Cursor::new(small));
+    }
+    Ok(Some(Array { name, rows, columns, scalar, start }))
 }

@@ -1,4 +1,4 @@
-//! Streaming readers for recordings (feature `io`): CSV/TSV, WAV, NPY, MAT v5.
+//! Streaming readers for recordings (feature `io`): CSV/TSV, WAV, NPY, MAT v5, Parquet.
 //!
 //! Problem. Recordings come in many dressings and are larger than memory. Every reader here hands out
 //! blocks of samples, one column a channel, and holds one block:
@@ -7,27 +7,30 @@
 //! |---|---|---|
 //! | text ([`text`]) | yes | delimiter, decimal comma, header, units, comments found by themselves |
 //! | WAV ([`wav`]) | yes | 8 to 32 bits whole, 32 and 64 bits float; whole numbers scaled to -1..1 |
-//! | NPY ([`npy`]) | yes, if channels are interleaved | 1-D or 2-D; the longer axis is time |
-//! | MAT v5 ([`mat`]) | no: memory is the file's content | vectors and matrices of numbers |
+//! | NPY ([`npy`]) | yes | 1-D or 2-D; the longer axis is time |
+//! | MAT v5 ([`mat`]) | yes, compressed or not | vectors and matrices of numbers |
+//! | Parquet ([`parquet`]) | by pages | columns of whole numbers, floats, truth values, times |
 //!
 //! Missing values come out as NaN, for [`crate::signal::inspect`] to find; anything else that is not
-//! a number is an error naming line and column. Parquet is not read.
+//! a number is an error naming line and column.
 //! Verified by `tests/io.rs` (round trips and damaged files).
 
 pub mod mat;
 pub mod npy;
 mod number;
+pub mod parquet;
+mod stretch;
 pub mod text;
 pub mod wav;
 
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Extensions of the formats read.
-pub const EXTENSIONS: [&str; 9] = ["csv", "tsv", "txt", "dat", "asc", "wav", "wave", "npy", "mat"];
+pub const EXTENSIONS: [&str; 11] = ["csv", "tsv", "txt", "dat", "asc", "wav", "wave", "npy", "mat", "parquet", "pq"];
 
 /// Why a recording could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -82,7 +85,7 @@ pub enum ReadError {
         channels: usize,
     },
     /// The extension of the file is not known.
-    #[error("cannot tell the format of {path} from its name; known: csv, tsv, txt, dat, asc, wav, npy, mat")]
+    #[error("cannot tell the format of {path} from its name; known: csv, tsv, txt, dat, asc, wav, npy, mat, parquet")]
     UnknownExtension {
         /// Which file.
         path: PathBuf,
@@ -147,11 +150,15 @@ pub fn open_counted(
         return Err(ReadError::UnknownExtension { path: path.into() });
     }
     let inner = File::open(path).map_err(|source| ReadError::File { path: path.into(), source })?;
+    let extension = extension(path);
+    if matches!(extension.as_str(), "parquet" | "pq") {
+        return Ok(Box::new(parquet::ParquetRecording::new(inner, bytes)?));
+    }
     let file = Counted { inner, bytes: Arc::clone(bytes) };
-    Ok(match extension(path).as_str() {
+    Ok(match extension.as_str() {
         "wav" | "wave" => Box::new(wav::WavRecording::new(BufReader::with_capacity(BUFFER, file))?),
-        "npy" => npy::open(BufReader::with_capacity(BUFFER, file))?,
-        "mat" => Box::new(mat::read(BufReader::with_capacity(BUFFER, file))?),
+        "npy" => npy::open(file)?,
+        "mat" => mat::open(file)?,
         _ => Box::new(text::TextReader::new(file, options)?),
     })
 }
@@ -171,6 +178,19 @@ impl Read for Counted {
         self.bytes.fetch_add(count as u64, Ordering::Relaxed);
         Ok(count)
     }
+}
+
+impl Seek for Counted {
+    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
+        self.inner.seek(to)
+    }
+}
+
+/// Whether a name in a file's own metadata means the sampling rate (any case).
+fn is_rate_name(name: &str) -> bool {
+    const NAMES: [&str; 7] =
+        ["fs", "rate", "rate_hz", "sample_rate", "samplerate", "sampling_rate", "sampling_rate_hz"];
+    NAMES.contains(&name.to_ascii_lowercase().as_str())
 }
 
 /// Reads everything that is left.
@@ -209,40 +229,4 @@ fn check_columns(channels: usize, columns: &[Vec<f64>]) -> std::result::Result<(
 
 fn numbered(count: usize) -> Vec<String> {
     (1..=count).map(|i| format!("channel {i}")).collect()
-}
-
-/// A recording in memory, handed out in blocks.
-#[derive(Debug, Clone)]
-pub struct MemoryReader {
-    recording: Recording,
-    at: usize,
-}
-
-impl MemoryReader {
-    /// Starts at the first sample.
-    #[must_use]
-    pub fn new(recording: Recording) -> Self {
-        Self { recording, at: 0 }
-    }
-}
-
-impl BlockReader for MemoryReader {
-    fn channels(&self) -> &[String] {
-        &self.recording.names
-    }
-
-    fn rate(&self) -> Option<f64> {
-        self.recording.rate
-    }
-
-    fn read_block(&mut self, samples: usize, columns: &mut [Vec<f64>]) -> std::result::Result<usize, ReadError> {
-        check_columns(self.recording.channels.len(), columns)?;
-        let total = self.recording.channels.iter().map(Vec::len).min();
-        let count = samples.min(total.unwrap_or(0).saturating_sub(self.at));
-        for (column, channel) in columns.iter_mut().zip(&self.recording.channels) {
-            column.extend_from_slice(&channel[self.at..self.at + count]);
-        }
-        self.at += count;
-        Ok(count)
-    }
 }

@@ -1,137 +1,119 @@
 //! NPY arrays: whole numbers and floats of 1 to 8 bytes, one or two axes; the longer axis is time.
 //!
-//! An array in which all channels of one instant lie together is streamed; one that holds a channel
-//! after the other is read whole.
+//! Layout: numpy.lib.format, versions 1 to 3. Streamed, whether all channels of one instant lie together or one channel lies after the other.
 
-use super::{BlockReader, MemoryReader, ReadError, Recording, check_columns, numbered};
-use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
-use std::io::Read;
+use super::stretch::{Kind, Place, Scalar, Stretch, StretchReader};
+use super::{BlockReader, ReadError, numbered};
+use std::cell::RefCell;
+use std::io::{Read, Seek};
+use std::rc::Rc;
 
 /// Opens an array.
 ///
 /// # Errors
 /// [`ReadError::Format`] when it is not an NPY file of numbers with one or two axes.
-pub fn open<R: Read + 'static>(mut source: R) -> Result<Box<dyn BlockReader>, ReadError> {
-    let header = NpyHeader::from_reader(&mut source).map_err(|e| npy_error(format!("bad header: {e}")))?;
-    let decode = Decoder::new(&header.dtype())?;
-    let (samples, channels, interleaved) = match *header.shape() {
+pub fn open<R: Read + Seek + 'static>(mut source: R) -> Result<Box<dyn BlockReader>, ReadError> {
+    let Header { scalar, by_columns, shape } = Header::read(&mut source)?;
+    let (samples, channels, interleaved) = match shape[..] {
         [n] => (n, 1, true),
-        [a, b] if a >= b => (a, b, header.order() == Order::C),
-        [a, b] => (b, a, header.order() == Order::Fortran),
-        ref shape => return Err(npy_error(format!("{} axes", shape.len()))),
+        [a, b] if a >= b => (a, b, !by_columns),
+        [a, b] => (b, a, by_columns),
+        _ => return Err(npy_error(format!("{} axes, known are one and two", shape.len()))),
     };
-    let bytes = samples.checked_mul(channels).and_then(|n| n.checked_mul(decode.size as u64));
-    let (Some(bytes), Ok(width)) = (bytes, usize::try_from(channels)) else {
-        return Err(npy_error("the array is larger than memory can address".into()));
+    let per_channel = samples.checked_mul(scalar.size as u64);
+    let (Some(per_channel), true) = (per_channel, per_channel.and_then(|n| n.checked_mul(channels)).is_some()) else {
+        return Err(npy_error(format!("{samples} samples of {channels} channels are more than a file can hold")));
     };
-    if width > 65_536 || (width == 0 && samples > 0) {
-        return Err(npy_error(format!("{width} channels")));
+    if channels > MOST_CHANNELS || (channels == 0 && samples > 0) {
+        return Err(npy_error(format!("{channels} channels, allowed are 1 to {MOST_CHANNELS}")));
     }
-    if interleaved {
-        return Ok(Box::new(NpyStream { names: numbered(width), source, decode, left: samples, bytes: Vec::new() }));
-    }
-    let mut raw = Vec::new();
-    source.take(bytes).read_to_end(&mut raw)?;
-    if raw.len() as u64 != bytes {
-        return Err(npy_error("the file ends before the array does".into()));
-    }
-    let per_channel = samples as usize * decode.size;
-    let channels = raw
-        .chunks_exact(per_channel.max(1))
-        .map(|part| part.chunks_exact(decode.size).map(|b| decode.value(b)).collect())
-        .collect();
-    Ok(Box::new(MemoryReader::new(Recording { names: numbered(width), rate: None, channels })))
+    let start = source.stream_position()?;
+    let file = Rc::new(RefCell::new(source));
+    let (count, width) = if interleaved { (1, channels) } else { (channels, 1) };
+    let stretch = |c| Stretch {
+        skip: 0,
+        source: Box::new(Place::new(&file, start + c * per_channel)),
+        scalar,
+        width: width as usize,
+        checked: false,
+    };
+    let stretches = (0..count).map(stretch).collect();
+    Ok(Box::new(StretchReader::new(FORMAT, numbered(channels as usize), None, stretches, samples)))
 }
+
+/// Channels at most.
+const MOST_CHANNELS: u64 = 65_536;
+
+const FORMAT: &str = "NPY";
 
 fn npy_error(reason: String) -> ReadError {
-    ReadError::Format { format: "NPY", reason }
+    ReadError::Format { format: FORMAT, reason }
 }
 
-#[derive(Debug, Clone, Copy)]
-enum Kind {
-    Float,
-    Signed,
-    Unsigned,
+/// What the header says.
+struct Header {
+    scalar: Scalar,
+    by_columns: bool,
+    shape: Vec<u64>,
 }
 
-#[derive(Debug, Clone, Copy)]
-struct Decoder {
-    kind: Kind,
-    size: usize,
-    big: bool,
-}
-
-impl Decoder {
-    fn new(dtype: &DType) -> Result<Self, ReadError> {
-        let unsupported = || npy_error(format!("elements of type {}", dtype.descr()));
-        let DType::Plain(ty) = dtype else {
-            return Err(unsupported());
+impl Header {
+    /// Reads magic, version, length, and a Python dictionary of three keys, e.g.
+    /// `{'descr': '<f8', 'fortran_order': False, 'shape': (3, 2), }`.
+    fn read(source: &mut impl Read) -> Result<Self, ReadError> {
+        let mut begin = [0; 8];
+        let short = |_| npy_error("it ends within its header".into());
+        source.read_exact(&mut begin).map_err(short)?;
+        if begin[..6] != *b"\x93NUMPY" {
+            return Err(npy_error("it does not begin with \\x93NUMPY".into()));
+        }
+        let mut size = [0; 4];
+        let bytes = match begin[6] {
+            1 => 2,
+            2 | 3 => 4,
+            version => return Err(npy_error(format!("version {version}, known are 1 to 3"))),
         };
-        let (kind, sizes): (_, &[u64]) = match ty.type_char() {
-            TypeChar::Float => (Kind::Float, &[4, 8]),
-            TypeChar::Int => (Kind::Signed, &[1, 2, 4, 8]),
-            TypeChar::Uint => (Kind::Unsigned, &[1, 2, 4, 8]),
-            _ => return Err(unsupported()),
+        source.read_exact(&mut size[..bytes]).map_err(short)?;
+        let size = u32::from_le_bytes(size);
+        if size > LONGEST_HEADER {
+            return Err(npy_error(format!("a header of {size} bytes, at most {LONGEST_HEADER} are allowed")));
+        }
+        let mut text = vec![0; size as usize];
+        source.read_exact(&mut text).map_err(short)?;
+        let text = String::from_utf8_lossy(&text);
+        let lacking = || npy_error(format!("its header {} lacks descr, fortran_order or shape", text.trim()));
+        let of = |key: &str| Some(text.split_once(key)?.1.trim_start().strip_prefix(':')?.trim_start());
+        let (Some(descr), Some(order), Some(shape)) = (of("'descr'"), of("'fortran_order'"), of("'shape'")) else {
+            return Err(lacking());
         };
-        if !sizes.contains(&ty.size_field()) {
-            return Err(unsupported());
-        }
-        Ok(Self { kind, size: ty.size_field() as usize, big: ty.endianness() == Endianness::Big })
-    }
-
-    fn value(self, bytes: &[u8]) -> f64 {
-        // Little-endian, sign-extended into eight bytes.
-        let mut wide = [0; 8];
-        for (i, b) in bytes.iter().enumerate().take(8) {
-            let at = if self.big { bytes.len() - 1 - i } else { i };
-            wide[at] = *b;
-        }
-        let bits = u64::from_le_bytes(wide);
-        let unused = 64 - 8 * self.size as u32;
-        match self.kind {
-            Kind::Unsigned => bits as f64,
-            Kind::Signed => (((bits << unused) as i64) >> unused) as f64,
-            Kind::Float if self.size == 4 => f64::from(f32::from_bits(bits as u32)),
-            Kind::Float => f64::from_bits(bits),
-        }
+        let descr = descr.strip_prefix('\'').and_then(|rest| Some(rest.split_once('\'')?.0));
+        let by_columns = match (order.starts_with("True"), order.starts_with("False")) {
+            (false, false) => return Err(lacking()),
+            (by_columns, _) => by_columns,
+        };
+        let (inside, _) = shape.strip_prefix('(').and_then(|rest| rest.split_once(')')).ok_or_else(lacking)?;
+        let axes = inside.split(',').map(str::trim).filter(|axis| !axis.is_empty());
+        let shape = axes.map(|axis| axis.parse().map_err(|_| lacking())).collect::<Result<_, _>>()?;
+        let scalar = descr.and_then(scalar).ok_or_else(|| {
+            let found = descr.unwrap_or("records");
+            npy_error(format!("elements of type {found}; known are i1 to i8, u1 to u8, f4 and f8"))
+        })?;
+        Ok(Self { scalar, by_columns, shape })
     }
 }
 
-struct NpyStream<R> {
-    source: R,
-    decode: Decoder,
-    names: Vec<String>,
-    left: u64,
-    bytes: Vec<u8>,
-}
+/// Bytes of a header at most (it has about 100).
+const LONGEST_HEADER: u32 = 1 << 20;
 
-impl<R: Read> BlockReader for NpyStream<R> {
-    fn channels(&self) -> &[String] {
-        &self.names
-    }
-
-    fn rate(&self) -> Option<f64> {
-        None
-    }
-
-    fn read_block(&mut self, samples: usize, columns: &mut [Vec<f64>]) -> Result<usize, ReadError> {
-        check_columns(self.names.len(), columns)?;
-        let (size, width) = (self.decode.size, columns.len());
-        let mut done = 0;
-        while done < samples && self.left > 0 && width > 0 {
-            let count = (samples - done).min(4096).min(self.left as usize);
-            self.bytes.resize(count * width * size, 0);
-            self.source.read_exact(&mut self.bytes).map_err(|e| npy_error(format!("the array breaks off: {e}")))?;
-            for (c, column) in columns.iter_mut().enumerate() {
-                column.extend(
-                    self.bytes
-                        .chunks_exact(width * size)
-                        .map(|frame| self.decode.value(&frame[c * size..(c + 1) * size])),
-                );
-            }
-            done += count;
-            self.left -= count as u64;
-        }
-        Ok(done)
-    }
+/// Number of a type such as `<f8`.
+fn scalar(descr: &str) -> Option<Scalar> {
+    let (order, rest) = descr.split_at_checked(1)?;
+    let (kind, size) = rest.split_at_checked(1)?;
+    let kind = match kind {
+        "f" => Kind::Float,
+        "i" => Kind::Signed,
+        "u" => Kind::Unsigned,
+        _ => return None,
+    };
+    matches!(order, "<" | ">" | "|" | "=").then(|| Scalar::new(kind, size.parse().ok()?, order == ">"))?
 }

@@ -34,6 +34,41 @@ pub struct RecordingCase {
     pub rule: RemovalRule,
     /// Where thresholds come from.
     pub limits: LimitSource,
+    /// How indicators with a memory keep it.
+    pub memory: MemoryPlan,
+    /// What detection is measured on.
+    pub detection: Option<DetectionPlan>,
+}
+
+/// How indicators with a memory keep it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MemoryPlan {
+    /// Recordings that NA4* and NB4* learn from.
+    pub learn: Option<usize>,
+    /// Limit of NA4* and NB4* (standard deviations of healthy variances).
+    pub lock_sigmas: f64,
+    /// Names of recordings before which it begins anew.
+    pub reset_before: Vec<String>,
+    /// Relative change of speed at which it begins anew.
+    pub reset_speed: Option<f64>,
+}
+
+/// What detection is measured on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DetectionPlan {
+    /// Damaged recordings.
+    pub damaged: DamagedSet,
+    /// Table of severities.
+    pub severities: Option<PathBuf>,
+}
+
+/// Which recordings are damaged.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DamagedSet {
+    /// Those of a folder.
+    Folder(PathBuf),
+    /// So many of the last of the trend.
+    Last(usize),
 }
 
 /// How the shaft turned.
@@ -84,11 +119,21 @@ pub fn resolve(mut inputs: Recording, document: &Node, folder: &Path) -> Result<
         faults.push(document.fault("signal.file", "name a recording, or a folder of recordings"));
     }
     let spacing = *inputs.difference.sideband_spacing.get_or_insert(inputs.average.per_turn);
-    let channels: Vec<String> =
-        inputs.signal.channels.split(',').map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect();
+    let channels = names(&inputs.signal.channels);
     let tachometer = tachometer(&inputs.tachometer, document, folder, &mut faults);
     let rule = rule(&inputs, spacing, document, &mut faults);
     let limits = limits(&mut inputs.thresholds, document, folder, &mut faults);
+    if let Some(angle) = inputs.signal.angles_deg.iter().find(|angle| !(angle.abs() <= 3600.0)) {
+        faults.push(document.fault("signal.angles_deg", format!("{angle}: must be within -3600 and 3600")));
+    }
+    if !channels.is_empty() && !inputs.signal.angles_deg.is_empty() && channels.len() != inputs.signal.angles_deg.len()
+    {
+        let (angles, channels) = (inputs.signal.angles_deg.len(), channels.len());
+        let message = format!("has {angles} numbers for the {channels} channels of signal.channels; give one for each");
+        faults.push(document.fault("signal.angles_deg", message));
+    }
+    let detection = detection(&inputs, document, folder, &mut faults);
+    let memory = memory(&inputs.memory);
     let (Some(tachometer), Some(rule), Some(limits), true) = (tachometer, rule, limits, faults.is_empty()) else {
         return Err(faults);
     };
@@ -115,8 +160,47 @@ pub fn resolve(mut inputs: Recording, document: &Node, folder: &Path) -> Result<
         },
         rule,
         limits,
+        memory,
+        detection,
         inputs,
     })
+}
+
+fn names(list: &str) -> Vec<String> {
+    list.split(',').map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect()
+}
+
+fn memory(written: &schema::Memory) -> MemoryPlan {
+    MemoryPlan {
+        learn: written.learn.map(|count| count as usize),
+        lock_sigmas: written.lock_sigmas,
+        reset_before: names(&written.reset_before),
+        reset_speed: written.reset_speed_percent.map(|percent| percent / 100.0),
+    }
+}
+
+fn detection(inputs: &Recording, document: &Node, folder: &Path, faults: &mut Vec<Fault>) -> Option<DetectionPlan> {
+    let written = &inputs.detection;
+    let damaged = match (&written.damaged, written.damaged_last) {
+        (Some(_), Some(_)) => {
+            faults.push(document.fault("detection.damaged_last", "give either damaged or damaged_last, not both"));
+            return None;
+        }
+        (Some(name), None) => DamagedSet::Folder(folder.join(name)),
+        (None, Some(count)) => DamagedSet::Last(count as usize),
+        (None, None) => {
+            if written.severities.is_some() {
+                let message = "needs a damaged set: give detection.damaged or detection.damaged_last";
+                faults.push(document.fault("detection.severities", message));
+            }
+            return None;
+        }
+    };
+    if inputs.thresholds.healthy.is_none() && inputs.thresholds.healthy_first.is_none() {
+        let message = "needs a healthy set to compare with: give thresholds.healthy or thresholds.healthy_first";
+        faults.push(document.fault("detection", message));
+    }
+    Some(DetectionPlan { damaged, severities: written.severities.as_ref().map(|name| folder.join(name)) })
 }
 
 fn tachometer(

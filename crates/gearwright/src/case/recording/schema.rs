@@ -30,6 +30,12 @@ pub struct Recording {
     /// When a value is a reason to look.
     #[serde(default)]
     pub thresholds: Thresholds,
+    /// Indicators with a memory in a trend: NA4 and NB4 over the variances of earlier recordings.
+    #[serde(default)]
+    pub memory: Memory,
+    /// How well indicators tell damaged from healthy recordings. Needs a healthy set, and `damaged` or `damaged_last`.
+    #[serde(default)]
+    pub detection: Detection,
     /// What is written.
     #[serde(default)]
     pub output: Output,
@@ -47,13 +53,16 @@ pub enum Kind {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Signal {
-    /// Recording, beside the case file: csv, tsv, txt, dat, asc, wav, npy or mat.
+    /// Recording, beside the case file: csv, tsv, txt, dat, asc, wav, npy, mat or parquet.
     /// A folder of recordings, taken in the order of their names, gives a trend.
     pub file: String,
     /// Channels to judge, by name or by number from 1, separated by commas, e.g. "3" or "gearbox x, gearbox y"; default: all that are
     /// neither tachometer nor time. A name with a comma in it has to be given by its number.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub channels: String,
+    /// Where the sensors sit about the housing (degrees), a number for each channel judged, in their order: gives polar maps of indicators.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub angles_deg: Vec<f64>,
     /// Sampling rate (Hz); default: what the file states, or the step of its time column.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-6, max = 1e12))]
@@ -294,6 +303,51 @@ pub enum Method {
     MeanPlusSigmas,
     /// Quantile of a healthy set.
     Quantile,
+}
+
+/// Indicators with a memory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Memory {
+    /// For NA4* and NB4* (`na4_locked`): recordings at the beginning that are taken as healthy; default: as many as are healthy by
+    /// `thresholds`, else 8.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 2, max = 1000000))]
+    pub learn: Option<u32>,
+    /// For NA4* and NB4*: the reference is locked once a variance is so many standard deviations above the mean of those before.
+    #[schemars(range(min = 0.0, max = 100.0))]
+    pub lock_sigmas: f64,
+    /// Recordings, by the names of their files and separated by commas, before which the memory begins anew: after a change of load or
+    /// an overhaul. Gives `na4_reset`, and `na4_locked` learns anew.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub reset_before: String,
+    /// The memory begins anew, too, when the mean speed is more than this off that of its first recording (%).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.001, max = 1000.0))]
+    pub reset_speed_percent: Option<f64>,
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Self { learn: None, lock_sigmas: 3.0, reset_before: String::new(), reset_speed_percent: None }
+    }
+}
+
+/// How well indicators tell damaged from healthy recordings.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Detection {
+    /// Folder of recordings of the damaged state, made like the signal.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub damaged: Option<String>,
+    /// Of a folder of recordings as signal, so many of the last are the damaged set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1000000))]
+    pub damaged_last: Option<u32>,
+    /// Text file with the columns "recording" (name of its file) and "severity" (a number: size of damage, level of noise, ..): gives the
+    /// probability of detection over severity. Recordings of the damaged set that are not in it are left out there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub severities: Option<String>,
 }
 
 /// What is written.

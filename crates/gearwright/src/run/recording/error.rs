@@ -147,6 +147,64 @@ pub enum RecordingError {
         /// Recordings that have indicators.
         found: usize,
     },
+    /// Angles do not match the channels.
+    #[error(
+        "{path}: signal.angles_deg has {angles} numbers for {channels} channels ({known}); give one for each channel judged, in this order"
+    )]
+    Angles {
+        /// Which file.
+        path: PathBuf,
+        /// Angles given.
+        angles: usize,
+        /// Channels judged.
+        channels: usize,
+        /// Their names.
+        known: String,
+    },
+    /// No damaged recording gives indicators.
+    #[error(
+        "{path}: the damaged set has no usable recordings ({first}); correct detection.damaged (--damaged) or damaged_last"
+    )]
+    Damaged {
+        /// Which folder.
+        path: PathBuf,
+        /// What is wrong with the first, if there is one.
+        first: String,
+    },
+    /// The healthy and the damaged set share recordings.
+    #[error(
+        "{path}: {healthy} healthy and {damaged} damaged recordings of {count} overlap; lower healthy_first or detection.damaged_last"
+    )]
+    Overlap {
+        /// Which folder.
+        path: PathBuf,
+        /// Recordings taken as healthy.
+        healthy: usize,
+        /// Recordings taken as damaged.
+        damaged: usize,
+        /// Recordings.
+        count: usize,
+    },
+    /// The table of severities is of no use.
+    #[error(
+        "{path}: line {line}: {reason}; correct detection.severities (--severities): two columns, recording and severity"
+    )]
+    Severities {
+        /// The table.
+        path: PathBuf,
+        /// Line, from 1.
+        line: u64,
+        /// What is wrong.
+        reason: String,
+    },
+    /// A recording is named that is not there.
+    #[error("{path}: there is no recording \"{name}\"; correct memory.reset_before")]
+    ResetBefore {
+        /// Folder of recordings.
+        path: PathBuf,
+        /// Name given.
+        name: String,
+    },
     /// The user stopped the run.
     #[error("stopped; nothing was written")]
     Cancelled,

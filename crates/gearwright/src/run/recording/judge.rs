@@ -86,6 +86,20 @@ impl Limits {
         }
     }
 
+    /// Why an indicator has no limit.
+    #[must_use]
+    pub fn why_none(&self, row: &Row) -> &'static str {
+        match (self, row.indicator, row.nominal) {
+            (_, "mean", _) => "the mean tells of the sensor, not of the gear",
+            (Self::Gaussian(_), _, None) => "no nominal value: needs a healthy set",
+            (Self::Gaussian(_), "energy_operator", _) => {
+                "the nominal value is that of white noise only: needs a healthy set"
+            }
+            (Self::Gaussian(_), _, Some(_)) => "regular vibration is not Gaussian: needs a healthy set",
+            (Self::Healthy(_), ..) => "fewer than two healthy recordings have a value",
+        }
+    }
+
     /// Verdict on an indicator; `None` without value or limit.
     #[must_use]
     pub fn verdict(&self, channel: &str, row: &Row) -> Option<Verdict> {

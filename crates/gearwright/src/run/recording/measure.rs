@@ -38,6 +38,16 @@ pub struct Measured {
     pub channels: Vec<Channel>,
 }
 
+impl Measured {
+    /// Value of an indicator of a channel.
+    #[must_use]
+    pub fn value(&self, channel: &str, quantity: &Row) -> Option<f64> {
+        let channel = self.channels.iter().find(|c| c.name == channel)?;
+        let row = channel.rows.iter().find(|r| r.indicator == quantity.indicator && r.signal == quantity.signal)?;
+        row.value.as_ref().ok().copied()
+    }
+}
+
 /// What a channel says.
 #[derive(Debug, Clone)]
 pub struct Channel {
@@ -105,6 +115,11 @@ pub fn measure(
     keep: bool,
 ) -> Result<Measured, RecordingError> {
     let layout = layout(file, case)?;
+    let (angles, channels) = (case.inputs.signal.angles_deg.len(), layout.judged.len());
+    if angles > 0 && angles != channels {
+        let known = layout.judged.iter().map(|(_, name)| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
+        return Err(RecordingError::Angles { path: file.into(), angles, channels, known });
+    }
     let turning = turning(file, case, &layout, progress)?;
     let plan = Plan::new(file, case, &layout, &turning.shaft)?;
     let mut tracks: Vec<Track> = layout.judged.iter().map(|_| Track::new(&plan)).collect();

@@ -1,8 +1,10 @@
 //! Condition indicators of a recording, or of a folder of recordings.
 
+pub mod detection;
 pub mod error;
 pub mod judge;
 pub mod measure;
+pub mod sets;
 mod source;
 pub mod trend;
 mod turning;
@@ -16,13 +18,14 @@ use rayon::prelude::*;
 use crate::case::RecordingCase;
 use crate::case::recording::resolve::{HealthySet, LimitSource};
 use crate::output::folder::ResultsFolder;
-use crate::output::{recording as tables, recording_summary as summary};
+use crate::output::{recording as tables, recording_detection as detection_tables, recording_summary as summary};
 use crate::plot::recording as figures;
 
 use self::error::RecordingError;
 use self::judge::Limits;
 use self::measure::{Measured, measure};
-use self::source::{Progress, recordings};
+use self::sets::{Detection, Files};
+use self::source::Progress;
 use self::trend::{Alarm, Entry};
 use super::{Finished, RunObserver};
 
@@ -41,6 +44,8 @@ pub struct Outcome {
     pub alarms: Vec<Alarm>,
     /// Recordings of the healthy set.
     pub healthy: usize,
+    /// Detection of damaged recordings.
+    pub detection: Option<Detection>,
 }
 
 impl Outcome {
@@ -70,6 +75,13 @@ pub fn run(case: &RecordingCase, target: &Path, observer: &dyn RunObserver) -> a
         tables::trend(&file("trend.csv"), &outcome.entries, &outcome.limits)?;
         tables::alarms(&file("alarms.csv"), &outcome.alarms)?;
     }
+    if let Some(detection) = &outcome.detection {
+        detection_tables::rates(&file("detection.csv"), &detection.detected)?;
+        detection_tables::roc(&file("roc.csv"), &detection.detected)?;
+        if case.detection.as_ref().is_some_and(|plan| plan.severities.is_some()) {
+            detection_tables::severities(&file("detection_over_severity.csv"), &detection.detected)?;
+        }
+    }
     if case.inputs.output.plots {
         for (name, chart) in figures::all(case, &outcome) {
             chart.save(&file, &name).map_err(|e| anyhow!("plot {name}: {e}"))?;
@@ -90,16 +102,8 @@ pub fn run(case: &RecordingCase, target: &Path, observer: &dyn RunObserver) -> a
 /// # Errors
 /// Input that gives no indicators.
 pub fn outcome(case: &RecordingCase, observer: &dyn RunObserver) -> Result<Outcome, RecordingError> {
-    let is_trend = case.signal.is_dir();
-    let files = recordings(&case.signal, "signal.file (--signal)")?;
-    let healthy_files = match &case.limits {
-        LimitSource::Healthy(HealthySet::Folder(folder), _) => recordings(folder, "thresholds.healthy (--healthy)")?,
-        LimitSource::Healthy(HealthySet::First(_), _) if !is_trend => {
-            let message = "thresholds.healthy_first (--healthy-first) needs a folder of recordings";
-            return Err(RecordingError::Kind { path: case.signal.clone(), message });
-        }
-        _ => Vec::new(),
-    };
+    let files = Files::of(case)?;
+    let is_trend = files.is_trend;
     let passes = turning::passes(case);
     let all = |files: &[PathBuf], keep: bool| -> Result<Vec<Entry>, RecordingError> {
         let progress = Progress::new(observer, files, passes);
@@ -115,44 +119,46 @@ pub fn outcome(case: &RecordingCase, observer: &dyn RunObserver) -> Result<Outco
             })
             .collect()
     };
-    let mut healthy = Vec::new();
-    if !healthy_files.is_empty() {
-        observer.stage("reading the healthy set (KiB)");
-        healthy = all(&healthy_files, false)?;
-    }
+    let of_set = |files: &[PathBuf], stage| {
+        if files.is_empty() {
+            return Ok(Vec::new());
+        }
+        observer.stage(stage);
+        all(files, false)
+    };
+    let mut healthy = of_set(&files.healthy, "reading the healthy set (KiB)")?;
+    let damaged = of_set(&files.damaged, "reading the damaged set (KiB)")?;
     observer.stage(if is_trend { "reading the recordings (KiB)" } else { "reading the recording (KiB)" });
     let mut entries = if is_trend {
-        all(&files, false)?
+        all(&files.judged, false)?
     } else {
         // One recording: its fault is the run's.
-        let measured = measure(&files[0], case, &Progress::new(observer, &files, passes), true)?;
+        let measured = measure(&files.judged[0], case, &Progress::new(observer, &files.judged, passes), true)?;
         vec![Entry { name: measured.name.clone(), measured: Ok(measured) }]
     };
     let Some(shown) = entries.iter().rposition(|entry| entry.measured.is_ok()) else {
         let first = entries.swap_remove(0).measured.err().unwrap_or_default();
-        return Err(RecordingError::Unusable { path: case.signal.clone(), count: files.len(), first });
+        return Err(RecordingError::Unusable { path: case.signal.clone(), count: files.judged.len(), first });
     };
     if is_trend || !healthy.is_empty() {
-        trend::remember(healthy.iter_mut().chain(&mut entries).filter_map(|entry| entry.measured.as_mut().ok()));
+        let known = match &case.limits {
+            LimitSource::Healthy(HealthySet::First(count), _) => Some(*count),
+            LimitSource::Healthy(HealthySet::Folder(_), _) => Some(healthy.len()),
+            LimitSource::Gaussian => None,
+        };
+        let in_order = healthy.iter_mut().chain(&mut entries).filter_map(|entry| entry.measured.as_mut().ok());
+        trend::remember(in_order, &case.memory, known).map_err(|source| RecordingError::Parameter {
+            path: case.signal.clone(),
+            key: "memory",
+            source,
+        })?;
     }
-    let usable = |entries: &'_ [Entry]| entries.iter().filter(|entry| entry.measured.is_ok()).count();
-    let (limits, healthy) = match &case.limits {
-        LimitSource::Gaussian => (Limits::Gaussian(case.inputs.thresholds.sigmas), 0),
-        LimitSource::Healthy(set, rule) => {
-            let (set, path) = match set {
-                HealthySet::Folder(path) => (&healthy[..], path),
-                HealthySet::First(count) => (&entries[..(*count).min(entries.len())], &case.signal),
-            };
-            let found = usable(set);
-            if found < 2 {
-                return Err(RecordingError::Healthy { path: path.clone(), found });
-            }
-            (Limits::of_healthy(set.iter().filter_map(|entry| entry.measured.as_ref().ok()), *rule), found)
-        }
-    };
+    let (limits, of_healthy) = sets::limits(case, &healthy, &entries)?;
+    let detection = sets::detection(case, &damaged, &entries, &of_healthy, &limits, files.severities.as_ref())?;
+    let healthy = of_healthy.len();
     if is_trend {
         observer.stage("signals of the last recording (KiB)");
-        keep_signals(&mut entries[shown], &files[shown], case, observer, passes)?;
+        keep_signals(&mut entries[shown], &files.judged[shown], case, observer, passes)?;
     }
     let thresholds = &case.inputs.thresholds;
     let (hits, window) = (thresholds.alarm_hits as usize, thresholds.alarm_window as usize);
@@ -165,7 +171,7 @@ pub fn outcome(case: &RecordingCase, observer: &dyn RunObserver) -> Result<Outco
     } else {
         Vec::new()
     };
-    Ok(Outcome { entries, is_trend, shown, limits, alarms, healthy })
+    Ok(Outcome { entries, is_trend, shown, limits, alarms, healthy, detection })
 }
 
 /// Measures a recording again for its signals; its indicators stay as they are, with their memory.

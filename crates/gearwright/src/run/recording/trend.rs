@@ -2,11 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use hums::indicator::trend::QuasiKurtosis;
+use hums::indicator::trend::{Memory, QuasiKurtosis};
 use hums::threshold::{AlarmRule, Rate, alarms};
 
 use super::judge::Limits;
 use super::measure::{Measured, Row};
+use crate::case::recording::resolve::MemoryPlan;
 
 /// A recording of a trend.
 #[derive(Debug)]
@@ -40,21 +41,64 @@ pub struct Alarm {
     pub share_above: f64,
 }
 
-/// Adds NA4 and NB4 with a memory over all recordings, those given first included.
-pub fn remember<'a>(recordings: impl Iterator<Item = &'a mut Measured>) {
-    let mut memories: BTreeMap<String, [QuasiKurtosis; 2]> = BTreeMap::new();
-    for channel in recordings.flat_map(|recording| &mut recording.channels) {
-        let Ok(average) = &channel.average else { continue };
-        let memory = memories.entry(channel.name.clone()).or_default();
-        let named = [("na4_running", "residual"), ("nb4_running", "mesh_envelope")];
-        for ((memory, moments), (indicator, signal)) in memory.iter_mut().zip(&average.memory).zip(named) {
-            let value = match moments {
-                Some(moments) => memory.update_moments(moments).map_err(|reason| reason.to_string()),
-                None => Err("this recording has no such signal".to_owned()),
-            };
-            channel.rows.push(Row { indicator, signal, value, nominal: None, standard_error: None });
+/// Kinds of memory with the names of their rows: NA4 of the residual signal, NB4 of the mesh envelope.
+const RUNNING: [&str; 2] = ["na4_running", "nb4_running"];
+const RESET: [&str; 2] = ["na4_reset", "nb4_reset"];
+const LOCKED: [&str; 2] = ["na4_locked", "nb4_locked"];
+const SIGNALS: [&str; 2] = ["residual", "mesh_envelope"];
+
+/// Recordings that NA4* learns from when nothing says which are healthy.
+const LEARN: usize = 8;
+
+/// Adds NA4 and NB4 with a memory over all recordings, those given first included: running over all of them, begun anew where the case
+/// says so, and locked at the first sign of damage. `healthy` recordings come first.
+///
+/// # Errors
+/// A parameter out of range (the case has been checked).
+pub fn remember<'a>(
+    recordings: impl Iterator<Item = &'a mut Measured>,
+    plan: &MemoryPlan,
+    healthy: Option<usize>,
+) -> hums::Result<()> {
+    let learn = plan.learn.or(healthy).unwrap_or(LEARN).max(2);
+    let pair = |memory| Ok([QuasiKurtosis::new(memory)?, QuasiKurtosis::new(memory)?]);
+    let mut kinds = vec![(RUNNING, Memory::Running, false)];
+    if !plan.reset_before.is_empty() || plan.reset_speed.is_some() {
+        kinds.push((RESET, Memory::Running, true));
+    }
+    kinds.push((LOCKED, Memory::Locked { z: plan.lock_sigmas, learn }, true));
+    let mut memories: BTreeMap<String, Vec<[QuasiKurtosis; 2]>> = BTreeMap::new();
+    let mut first_speed: Option<f64> = None;
+    for recording in recordings {
+        let speed = (recording.speed.0 + recording.speed.1) / 2.0;
+        let changed = |first: f64| plan.reset_speed.is_some_and(|most| (speed - first).abs() > most * first);
+        let anew = plan.reset_before.contains(&recording.name) || first_speed.is_some_and(changed);
+        if anew || first_speed.is_none() {
+            first_speed = Some(speed);
+        }
+        for channel in &mut recording.channels {
+            if !memories.contains_key(&channel.name) {
+                let fresh = kinds.iter().map(|kind| pair(kind.1)).collect::<hums::Result<_>>()?;
+                memories.insert(channel.name.clone(), fresh);
+            }
+            let (Ok(average), Some(memories)) = (&channel.average, memories.get_mut(&channel.name)) else { continue };
+            for ((names, _, resets), pair) in kinds.iter().zip(memories) {
+                for (((memory, moments), indicator), signal) in
+                    pair.iter_mut().zip(&average.memory).zip(names).zip(SIGNALS)
+                {
+                    if anew && *resets {
+                        memory.reset();
+                    }
+                    let value = match moments {
+                        Some(moments) => memory.update_moments(moments).map_err(|reason| reason.to_string()),
+                        None => Err("this recording has no such signal".to_owned()),
+                    };
+                    channel.rows.push(Row { indicator, signal, value, nominal: None, standard_error: None });
+                }
+            }
         }
     }
+    Ok(())
 }
 
 /// The alarms of a trend, in the order in which they came up.
@@ -100,7 +144,5 @@ pub fn alarm_log(trend: &[Entry], limits: &Limits, hits: usize, window: usize) -
 /// Value of an indicator in a recording.
 #[must_use]
 pub fn value(entry: &Entry, channel: &str, quantity: &Row) -> Option<f64> {
-    let channel = entry.measured.as_ref().ok()?.channels.iter().find(|c| c.name == channel)?;
-    let row = channel.rows.iter().find(|r| r.indicator == quantity.indicator && r.signal == quantity.signal)?;
-    row.value.as_ref().ok().copied()
+    entry.measured.as_ref().ok()?.value(channel, quantity)
 }

@@ -1,0 +1,75 @@
+//! Receiver operating characteristics, and probability of detection over severity (its intervals are in the table).
+
+use crate::case::RecordingCase;
+use crate::plot::{COLOURS, Line, MarkedChart, Pattern};
+use crate::run::recording::Outcome;
+use crate::run::recording::detection::Detected;
+
+use super::{CHANNELS, TRENDS, chart, heading};
+
+/// Figures for each channel.
+pub fn charts(case: &RecordingCase, outcome: &Outcome) -> Vec<(String, MarkedChart)> {
+    let Some(detection) = &outcome.detection else { return Vec::new() };
+    let mut channels: Vec<&str> = Vec::new();
+    for detected in &detection.detected {
+        if !channels.contains(&detected.channel.as_str()) {
+            channels.push(&detected.channel);
+        }
+    }
+    let mut charts = Vec::new();
+    for (index, channel) in channels.iter().take(CHANNELS).enumerate() {
+        let name = |what: &str| if channels.len() > 1 { format!("{what}_{}", index + 1) } else { what.to_owned() };
+        let of = |(indicator, signal): &(&str, &str)| {
+            let same = |d: &&Detected| d.channel == *channel && d.indicator == *indicator && d.signal == *signal;
+            detection.detected.iter().find(same)
+        };
+        let shown: Vec<&Detected> = TRENDS.iter().filter_map(of).collect();
+        charts.push((name("roc"), roc(case, channel, &shown)));
+        if shown.iter().any(|detected| detected.by_severity.len() > 1) {
+            charts.push((name("detection_over_severity"), over_severity(case, channel, &shown)));
+        }
+    }
+    charts
+}
+
+fn named(detected: &Detected, extra: &str) -> String {
+    format!("{}, {}{extra}", detected.indicator.replace('_', " "), detected.signal)
+}
+
+fn line(name: String, index: usize, points: Vec<(f64, f64)>) -> Line {
+    // Curves that run together stay apart by their patterns.
+    let patterns = [Pattern::Solid, Pattern::Dashed, Pattern::DashDotted, Pattern::Dotted];
+    Line { name, points, pattern: patterns[index % patterns.len()], colour: COLOURS[index % COLOURS.len()] }
+}
+
+fn roc(case: &RecordingCase, channel: &str, shown: &[&Detected]) -> MarkedChart {
+    let mut lines: Vec<Line> = shown
+        .iter()
+        .enumerate()
+        .map(|(index, detected)| {
+            let points = detected.roc.points.iter().map(|p| (p.false_alarm_rate, p.detection_rate)).collect();
+            line(named(detected, &format!(": {:.3}", detected.roc.area)), index, points)
+        })
+        .collect();
+    let chance = vec![(0.0, 0.0), (1.0, 1.0)];
+    lines.push(Line { name: "chance: 0.500".into(), points: chance, pattern: Pattern::Dotted, colour: "#9a9a9a" });
+    let title = heading(case, &format!("receiver operating characteristic of {channel}, area under it"));
+    let chart = chart(title, "False-alarm rate", "Detection rate".into(), lines);
+    MarkedChart { chart, marks: Vec::new(), x_range: Some((0.0, 1.0)), y_up_to: Some(1.0) }
+}
+
+fn over_severity(case: &RecordingCase, channel: &str, shown: &[&Detected]) -> MarkedChart {
+    let some: Vec<&&Detected> = shown.iter().filter(|detected| !detected.by_severity.is_empty()).collect();
+    let lines: Vec<Line> = some
+        .iter()
+        .enumerate()
+        .map(|(index, detected)| {
+            let points = detected.by_severity.iter().map(|(severity, rate)| (*severity, rate.value())).collect();
+            line(named(detected, ""), index, points)
+        })
+        .collect();
+    let title = heading(case, &format!("probability of detection of {channel}"));
+    let mut chart = chart(title, "Severity", "Share above the threshold".into(), lines);
+    chart.from_zero = true;
+    MarkedChart { chart, marks: Vec::new(), x_range: None, y_up_to: Some(1.0) }
+}
