@@ -185,8 +185,9 @@ fn summit(x: [f64; 3], y: [f64; 3]) -> Option<(f64, f64)> {
 pub(super) fn face_positions(model: &PairModel, body: &GearBody) -> Vec<f64> {
     let FaceModel::Solid { order } = model.options.face else { return vec![0.0] };
     let half = 0.5 * body.families[0].basis.width();
-    // an even order has a point at mid-face
-    let points = lobatto_points(2 * order.div_ceil(2)).into_iter().map(|x| half * x);
+    // an even order has a point at mid-face, known to rounding
+    let points =
+        lobatto_points(2 * order.div_ceil(2)).into_iter().map(|x| if x.abs() < 1e-12 { 0.0 } else { half * x });
     points.filter(|&z| !model.face.mirrored || z >= 0.0).collect()
 }
 
