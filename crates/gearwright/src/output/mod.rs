@@ -7,6 +7,7 @@ pub mod lumped_summary;
 pub mod lumped_tables;
 pub mod recording;
 pub mod recording_summary;
+pub mod stress;
 pub mod summary;
 pub mod tables;
 pub mod vtu;
