@@ -1,5 +1,6 @@
 //! Error against run time of the numerics on offer, with the defaults marked.
 
+mod damage;
 mod dynamics_lumped;
 mod report;
 mod statics;
@@ -9,6 +10,8 @@ mod statics;
 pub enum Study {
     /// Transmission error and mesh stiffness of the static contact.
     Statics,
+    /// Increase of the transmission error by a crack and a pit, stress-intensity factor.
+    Damage,
     /// Integration methods of the lumped-parameter dynamics.
     DynamicsLumped,
 }
@@ -17,6 +20,7 @@ pub enum Study {
 pub fn run(study: Study) -> anyhow::Result<()> {
     match study {
         Study::Statics => statics::run(),
+        Study::Damage => damage::run(),
         Study::DynamicsLumped => dynamics_lumped::run(),
     }
 }
