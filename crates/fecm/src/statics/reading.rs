@@ -7,6 +7,7 @@
 //! so that one solve per functional serves all positions and torques.
 
 use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::Mat;
 use nalgebra::{Rotation2, Vector2};
@@ -70,6 +71,8 @@ impl PairModel {
 pub(super) struct SectorReading {
     families: Vec<FamilyReading>,
     count: usize,
+    /// `(X^T r_I - r_C)^T G_ab` by family, tooth read and tooth loaded; made when first asked for.
+    between: Mutex<BTreeMap<(usize, i32, i32), Arc<Mat<f64>>>>,
 }
 
 struct FamilyReading {
@@ -85,7 +88,7 @@ impl SectorReading {
         let families = body.families.iter().zip(functionals).enumerate();
         let families =
             families.map(|(index, (family, list))| FamilyReading::new(body, sector, index, &family.basis, list));
-        Self { families: families.collect(), count: functionals.first().map_or(0, Vec::len) }
+        Self { families: families.collect(), count: functionals.first().map_or(0, Vec::len), between: Mutex::default() }
     }
 
     /// Values on tooth `tooth` under the loads of its gear.
@@ -102,11 +105,24 @@ impl SectorReading {
                 }
                 let solution = body.sector(other).families[index].condensed.retained_solution();
                 let on_cuts = product(solution.transpose(), load[index].as_ref());
-                let moved = product(family.ring.pair(tooth, other).as_ref(), on_cuts.as_ref());
-                add(product(reading.cuts.transpose(), moved.as_ref()));
+                let between = self.between(index, tooth, other, || {
+                    product(reading.cuts.transpose(), family.ring.pair(tooth, other).as_ref())
+                });
+                add(product(between.as_ref().as_ref(), on_cuts.as_ref()));
             }
         }
         sums
+    }
+
+    fn between(&self, family: usize, tooth: i32, loaded: i32, make: impl FnOnce() -> Mat<f64>) -> Arc<Mat<f64>> {
+        let lock = || self.between.lock().unwrap_or_else(PoisonError::into_inner);
+        let key = (family, tooth, loaded);
+        if let Some(known) = lock().get(&key) {
+            return Arc::clone(known);
+        }
+        // made outside the lock: two threads may both do it, with the same outcome
+        let made = make();
+        Arc::clone(lock().entry(key).or_insert_with(|| Arc::new(made)))
     }
 }
 
