@@ -139,6 +139,23 @@ impl FaceBasis {
         legendre(degree, 2.0 * z / self.width).0
     }
 
+    /// Value, slope (1/m) and curvature (1/m^2) of the function of one degree at face position `z` (m).
+    #[must_use]
+    pub fn derivatives(&self, degree: usize, z: f64) -> [f64; 3] {
+        let (x, scale) = (2.0 * z / self.width, 2.0 / self.width);
+        let (value, slope) = legendre(degree, x);
+        let n = degree as f64;
+        let rest = 1.0 - x * x;
+        // Legendre's equation; at the ends of the interval its limit
+        let curvature = if rest.abs() > 1e-9 {
+            (2.0 * x * slope - n * (n + 1.0) * value) / rest
+        } else {
+            let sign = if x < 0.0 && degree % 2 == 1 { -1.0 } else { 1.0 };
+            sign * (n - 1.0) * n * (n + 1.0) * (n + 2.0) / 8.0
+        };
+        [value, scale * slope, scale * scale * curvature]
+    }
+
     /// Values of the in-plane functions at `z`, in the order of [`Self::plane_degrees`].
     #[must_use]
     pub fn plane_values(&self, z: f64) -> Vec<f64> {

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`element`], [`mesh`], [`face`], [`assembly`] | finite elements of an extruded body |
 //! | [`condense`], [`ring`] | one sector condensed, the ring of sectors closed |
+//! | [`functional`], [`fracture`], [`surface`] | what is read from a displacement field: crack tips, stress on free surfaces |
 //! | [`body`] | a gear as the contact problem sees it |
 //! | [`mass`], [`modes`] | inertia of a gear, and its elastic modes with the hub held |
 //! | [`profile`], [`pairing`], [`search`] | flanks in space, exact separations, tip contact |
@@ -48,6 +49,8 @@ pub mod dynamics;
 pub mod element;
 pub mod error;
 pub mod face;
+pub mod fracture;
+pub mod functional;
 pub mod halfspace;
 pub mod lcp;
 pub mod linalg;
@@ -61,6 +64,7 @@ pub mod profile;
 pub mod ring;
 pub mod search;
 pub mod statics;
+pub mod surface;
 
 pub use body::BoreCondition;
 pub use error::FecmError;

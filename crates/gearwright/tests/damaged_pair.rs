@@ -86,7 +86,16 @@ fn sweep_of_cracks_and_pits_leaves_tables_plots_and_grids() {
             assert_eq!(damaged.len(), healthy.len());
             assert!(damaged.iter().zip(&healthy).all(|(d, h)| d > &(0.999 * h)));
         }
+        let tensions = column(&folder.join("series.csv"), "pair_0_pinion_root_tension_mpa");
+        assert!(tensions.iter().all(|&t| t >= 0.0) && tensions.iter().any(|&t| t > 10.0), "{tensions:?}");
         if damage.contains("0.0, 20.0") {
+            let opening = |k: u32| {
+                let column = column(&folder.join(format!("series_damage_{k}.csv")), "pinion_tooth_0_k_one_mpa_sqrt_m");
+                column.into_iter().fold(0.0, f64::max)
+            };
+            assert!(opening(2) > 0.1 && opening(3) > opening(2), "{} {}", opening(2), opening(3));
+            assert_eq!(column(&folder.join("crack_front_3.csv"), "tooth"), vec![0.0; healthy.len()]);
+            assert!(!folder.join("crack_front_1.csv").exists() && folder.join("damage_stress_intensity.png").exists());
             assert_eq!(healthy, column(&folder.join("series_damage_1.csv"), "ste_um"), "no crack is healthy");
         }
         for name in [

@@ -21,6 +21,7 @@
 //! | [`indicator`] | condition indicators: single, in tables, with a memory |
 //! | [`threshold`] | limits, rates, receiver operating characteristic, alarms |
 //! | [`phenomenon`] | damped-sine model of damage: fit, densities, closed forms, several modes |
+//! | [`damage_type`] | crack or pit, and how much of it, from the static transmission error |
 //! | [`modal_fit`] | modes from ringing by matrix pencil and Prony |
 //!
 //! Citations "D n.n" are to the dissertation that the project reproduces: see `docs/references.bib`.
@@ -64,6 +65,7 @@
 
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout))]
 
+pub mod damage_type;
 pub mod difference;
 pub mod envelope;
 mod error;

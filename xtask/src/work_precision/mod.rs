@@ -1,5 +1,6 @@
 //! Error against run time of the numerics on offer, with the defaults marked.
 
+mod damage;
 mod dynamics_lumped;
 mod hums;
 mod report;
@@ -10,6 +11,8 @@ mod statics;
 pub enum Study {
     /// Transmission error and mesh stiffness of the static contact.
     Statics,
+    /// Increase of the transmission error by a crack and a pit, stress-intensity factor.
+    Damage,
     /// Integration methods of the lumped-parameter dynamics.
     DynamicsLumped,
     /// Interpolation of synchronous averages, windows and segments of spectra.
@@ -20,6 +23,7 @@ pub enum Study {
 pub fn run(study: Study) -> anyhow::Result<()> {
     match study {
         Study::Statics => statics::run(),
+        Study::Damage => damage::run(),
         Study::DynamicsLumped => dynamics_lumped::run(),
         Study::Hums => hums::run(),
     }

@@ -277,6 +277,17 @@ impl GearBody {
         self.damaged.get(&tooth.rem_euclid(self.teeth)).unwrap_or(&self.healthy)
     }
 
+    /// The sector of all teeth without a crack of their own.
+    #[must_use]
+    pub fn healthy_sector(&self) -> &ToothSector {
+        &self.healthy
+    }
+
+    /// Numbers in `0..teeth` of the teeth that have a sector of their own, ascending.
+    pub fn damaged_teeth(&self) -> impl Iterator<Item = i32> + '_ {
+        self.damaged.keys().copied()
+    }
+
     /// Normal displacement by unit normal loads at the `loaded` stations of a tooth (m/N), in the functions along the face of a family. On
     /// the same tooth it is the one at depth below the `observed` stations, symmetric; on another tooth that of its flank. Zero beyond
     /// the reach.

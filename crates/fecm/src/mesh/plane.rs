@@ -1,5 +1,7 @@
 //! A plane mesh of quadrilaterals of one order.
 
+use std::collections::HashMap;
+
 use nalgebra::Point2;
 
 use crate::element::ReferenceQuad;
@@ -52,6 +54,37 @@ impl PlaneMesh {
     pub fn corners(&self, index: usize) -> [u32; 4] {
         let (element, p) = (self.element(index), self.order);
         [element[0], element[p], element[(p + 1) * (p + 1) - 1], element[(p + 1) * p]]
+    }
+
+    /// The four edges of one element, `order + 1` nodes each, counter-clockwise: the outside is on the right.
+    #[must_use]
+    pub fn element_edges(&self, index: usize) -> [Vec<u32>; 4] {
+        let (element, p) = (self.element(index), self.order);
+        let at = |i: usize, j: usize| element[i + (p + 1) * j];
+        let walk = |place: &dyn Fn(usize) -> (usize, usize)| {
+            (0..=p)
+                .map(|k| {
+                    let (i, j) = place(k);
+                    at(i, j)
+                })
+                .collect()
+        };
+        [walk(&|k| (k, 0)), walk(&|k| (p, k)), walk(&|k| (p - k, p)), walk(&|k| (0, p - k))]
+    }
+
+    /// Edges that belong to one element only, in the order of elements: its number and the edge's nodes, the outside on the right. Both
+    /// faces of a crack are among them.
+    #[must_use]
+    pub fn boundary_edges(&self) -> Vec<(usize, Vec<u32>)> {
+        let ends = |edge: &[u32]| (edge[0].min(edge[self.order]), edge[0].max(edge[self.order]));
+        let all = || (0..self.element_count()).flat_map(|e| self.element_edges(e).map(|edge| (e, edge)));
+        // the faces of a crack whose ends are both shared differ in their middle
+        let key = |edge: &[u32]| (ends(edge), edge[1].min(edge[self.order - 1]));
+        let mut uses = HashMap::new();
+        for (_, edge) in all() {
+            *uses.entry(key(&edge)).or_insert(0_u32) += 1;
+        }
+        all().filter(|(_, edge)| uses[&key(edge)] == 1).collect()
     }
 
     /// Checks that no element is inside out.

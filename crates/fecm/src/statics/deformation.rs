@@ -25,30 +25,13 @@ impl PairModel {
     /// Factorisation errors, points outside the mesh.
     pub fn deformation(&self, position: &PositionResult, member: usize) -> Result<BodyDeformation, FecmError> {
         let body = &self.bodies[member];
-        let teeth = body.teeth() as usize;
-        let step = self.pairing.tooth_steps()[member];
-        let mut coefficients = vec![Vec::new(); teeth];
-        for (index, family) in body.families.iter().enumerate() {
-            let mut loads: Vec<Option<Mat<f64>>> = vec![None; teeth];
-            for patch in &position.patches {
-                let tooth = (i64::from(patch.pair) * i64::from(step)).rem_euclid(teeth as i64) as usize;
-                let places = if self.face.mirrored { 2.0 } else { 1.0 };
-                let area = patch.cell[0] * patch.cell[1] * places;
-                let rolls = if member == 0 { &patch.pinion_roll } else { &patch.wheel_roll };
-                let sector = body.sector(tooth as i32);
-                let size = sector.families[index].condensed.interior_size();
-                let load = loads[tooth].get_or_insert_with(|| Mat::zeros(size, 1));
-                for (roll, pressures) in rolls.iter().zip(&patch.pressure) {
-                    let station = sector.station(*roll)?;
-                    let mut modal = vec![0.0; family.basis.plane_degrees().len()];
-                    for (z, pressure) in patch.face.iter().zip(pressures) {
-                        for (sum, value) in modal.iter_mut().zip(family.basis.plane_values(*z)) {
-                            *sum += value * pressure * area;
-                        }
-                    }
-                    sector.add_load(index, &station, &modal, load);
-                }
-            }
+        let teeth = body.teeth();
+        let mut on_teeth = self.tooth_loads(position, member)?;
+        let mut coefficients = vec![Vec::new(); teeth as usize];
+        for index in 0..body.families.len() {
+            let mut take =
+                |tooth: i32| on_teeth.get_mut(&tooth).map(|loads| std::mem::replace(&mut loads[index], Mat::new()));
+            let loads: Vec<Option<Mat<f64>>> = (0..teeth).map(&mut take).collect();
             let fields = recover(body, index, &loads)?;
             for (sector, field) in coefficients.iter_mut().zip(fields) {
                 sector.push(field);

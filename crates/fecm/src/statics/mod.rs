@@ -17,17 +17,22 @@
 //!
 //! [`PairModel::new`] does what is done once (mesh, condense); [`PairModel::solve`] is cheap and parallel.
 
+mod crack_tip;
 mod deformation;
 mod model;
 mod options;
 mod position;
+mod reading;
 mod result;
+mod root_stress;
 mod series;
 
+pub use crack_tip::{CrackTip, CrackTipReader};
 pub use deformation::BodyDeformation;
 pub use model::{ModelStats, PairModel};
 pub use options::{ContactOptions, MemberOptions, PairModelOptions};
 pub use position::Settled;
 pub(crate) use position::{GridScope, PositionRequest, Start};
 pub use result::{PairState, PositionResult, PositionStats, PositionStatus, PressurePatch};
+pub use root_stress::{RootPeak, RootStress, RootStressReader};
 pub use series::{Observer, StaticsRequest, StaticsSeries};

@@ -1,6 +1,8 @@
-//! The gears that the tests of pairs share.
+//! What tests share: gears of pairs, plane bodies.
 // every test binary uses a part of it
 #![allow(dead_code)]
+
+pub mod bodies;
 
 use gear_geom::{Gear, GearPair, GearSpec, ToothThickness};
 

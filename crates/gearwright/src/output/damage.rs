@@ -5,6 +5,8 @@ use std::path::Path;
 use fecm::statics::PositionResult;
 use serde::Serialize;
 
+use super::stress::Stresses;
+
 /// Effect of one severity against the healthy pair at the same positions.
 #[derive(Debug, Clone, Serialize)]
 pub struct Effect {
@@ -24,6 +26,8 @@ pub struct Effect {
     pub stiffness_decrease_max_percent: f64,
     /// Mesh cycle of it.
     pub stiffness_decrease_max_at: f64,
+    /// Largest stress-intensity factor `K_I` of its cracks (MPa sqrt(m)).
+    pub k_one_max_mpa_sqrt_m: Option<f64>,
 }
 
 /// The 1 % rule of the dissertation.
@@ -31,7 +35,13 @@ const AFFECTED: f64 = 0.01;
 
 /// Effect of a damaged series; `origin` is added to mesh cycles. Positions without a usable answer do not count.
 #[must_use]
-pub fn effect(label: &str, healthy: &[PositionResult], damaged: &[PositionResult], origin: f64) -> Effect {
+pub fn effect(
+    label: &str,
+    healthy: &[PositionResult],
+    damaged: &[PositionResult],
+    stresses: &Stresses,
+    origin: f64,
+) -> Effect {
     let pairs = || healthy.iter().zip(damaged).filter(|(h, d)| h.status.is_usable() && d.status.is_usable());
     let largest = |value: &dyn Fn(&PositionResult, &PositionResult) -> Option<f64>| {
         let all = pairs().filter_map(|(h, d)| value(h, d).map(|v| (v, d.mesh_cycle + origin)));
@@ -57,6 +67,7 @@ pub fn effect(label: &str, healthy: &[PositionResult], damaged: &[PositionResult
         affected_mesh_cycles: affected as f64 * step,
         stiffness_decrease_max_percent: 100.0 * stiffness_decrease.0,
         stiffness_decrease_max_at: stiffness_decrease.1,
+        k_one_max_mpa_sqrt_m: stresses.largest_k_one(),
     }
 }
 

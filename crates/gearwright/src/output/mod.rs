@@ -10,6 +10,7 @@ pub mod lumped_tables;
 pub mod recording;
 pub mod recording_detection;
 pub mod recording_summary;
+pub mod stress;
 pub mod summary;
 pub mod tables;
 pub mod vtu;

@@ -7,6 +7,7 @@ use gear_geom::{GearPair, Landmark, Landmarks, Member};
 use serde::Serialize;
 
 use super::damage::Effect;
+use super::stress::{LargestRoot, Stresses};
 use crate::case::SpurPairCase;
 use crate::case::spur_pair::schema::SpurPair;
 
@@ -91,6 +92,10 @@ pub struct Results {
     pub largest_tooth_force_n: f64,
     /// Largest contact pressure (MPa).
     pub largest_pressure_mpa: f64,
+    /// Largest tension at the roots of pinion and gear, if asked for.
+    pub largest_root_tension: [Option<LargestRoot>; 2],
+    /// Largest compression at the roots of pinion and gear, if asked for.
+    pub largest_root_compression: [Option<LargestRoot>; 2],
     /// Largest residual of the torque, relative.
     pub largest_torque_residual: f64,
     /// Largest violation of the contact conditions, relative.
@@ -138,6 +143,8 @@ pub struct Times {
     pub map: f64,
     /// Damaged pairs, condensation and contact.
     pub damage: f64,
+    /// Root stresses and stress-intensity factors.
+    pub stress: f64,
     /// Plots and files.
     pub output: f64,
 }
@@ -169,7 +176,8 @@ pub fn count_status<'a>(positions: impl Iterator<Item = &'a PositionResult>) -> 
 
 /// Extrema of a series; `origin` is added to mesh cycles.
 #[must_use]
-pub fn results(all: &[PositionResult], origin: f64) -> Results {
+pub fn results(all: &[PositionResult], stresses: &Stresses, origin: f64) -> Results {
+    let root = |side: usize| [0, 1].map(|member| stresses.largest_root(all, member, side, origin));
     let series: Vec<&PositionResult> = all.iter().filter(|r| r.status.is_usable()).collect();
     let over = |value: &dyn Fn(&PositionResult) -> Option<f64>, scale: f64| {
         Range::of(series.iter().map(|r| (r.mesh_cycle + origin, value(r))), scale)
@@ -187,6 +195,8 @@ pub fn results(all: &[PositionResult], origin: f64) -> Results {
         mesh_stiffness_average_n_per_um: over(&|r| r.stiffness_average_slope, 1e-6),
         mesh_stiffness_local_n_per_um: over(&PositionResult::local_stiffness, 1e-6),
         largest_tooth_force_n: most(&|r| r.pairs.iter().map(|p| p.force).fold(0.0, f64::max)),
+        largest_root_tension: root(0),
+        largest_root_compression: root(1),
         largest_pressure_mpa: most(&|r| r.peak_pressure() * 1e-6),
         largest_torque_residual: most(&|r| r.stats.torque_residual),
         largest_kkt_violation: most(&|r| r.stats.solver.kkt_violation),
@@ -289,6 +299,12 @@ pub fn screen(case: &SpurPairCase, results: &Results, damage: &[Effect], stats: 
     line(&mut text, "mesh stiffness, average slope", format!("{:.1} to {:.1} N/um", average.min, average.max));
     line(&mut text, "largest tooth force", format!("{:.1} N", results.largest_tooth_force_n));
     line(&mut text, "largest contact pressure", format!("{:.0} MPa", results.largest_pressure_mpa));
+    if let [Some(pinion), Some(gear)] = &results.largest_root_tension {
+        let one = |root: &LargestRoot| {
+            format!("{:.0} MPa at the {:.0} degree tangent", root.stress_mpa, root.tangent_angle_deg)
+        };
+        line(&mut text, "largest root stress", format!("pinion {}, gear {}", one(pinion), one(gear)));
+    }
     line(
         &mut text,
         "residuals: torque, contact",
@@ -325,12 +341,13 @@ pub fn screen(case: &SpurPairCase, results: &Results, damage: &[Effect], stats: 
         &mut text,
         "time",
         format!(
-            "{:.2} s condensation, {:.2} s contact at {} positions{}{}, {:.2} s files",
+            "{:.2} s condensation, {:.2} s contact at {} positions{}{}, {:.2} s stresses, {:.2} s files",
             times.condensation,
             times.contact,
             results.positions,
             if times.map > 0.0 { format!(", {:.2} s force-deflection map", times.map) } else { String::new() },
             if times.damage > 0.0 { format!(", {:.2} s damage", times.damage) } else { String::new() },
+            times.stress,
             times.output
         ),
     );

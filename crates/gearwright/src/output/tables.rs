@@ -5,6 +5,8 @@ use std::path::Path;
 
 use fecm::statics::PositionResult;
 
+use super::stress::Stresses;
+
 fn number(value: f64) -> String {
     format!("{value:.9e}")
 }
@@ -13,11 +15,11 @@ fn optional(value: Option<f64>, scale: f64) -> String {
     value.map_or(String::new(), |v| number(v * scale))
 }
 
-/// `series.csv`: one row per position. `origin` is added to the mesh cycle.
+/// `series.csv`: one row per position, with what was read from its stresses. `origin` is added to the mesh cycle.
 ///
 /// # Errors
 /// I/O errors.
-pub fn series(path: &Path, results: &[PositionResult], origin: f64) -> Result<(), csv::Error> {
+pub fn series(path: &Path, results: &[PositionResult], stresses: &Stresses, origin: f64) -> Result<(), csv::Error> {
     let pairs: BTreeSet<i32> = results.iter().flat_map(|r| r.pairs.iter().map(|p| p.pair)).collect();
     let mut table = csv::Writer::from_path(path)?;
     let mut header: Vec<String> = [
@@ -39,9 +41,10 @@ pub fn series(path: &Path, results: &[PositionResult], origin: f64) -> Result<()
             header.push(format!("pair_{pair}_{quantity}"));
         }
     }
+    header.extend(stresses.header(&pairs));
     header.extend(["status", "torque_residual", "kkt_violation", "cells", "pivots"].map(String::from));
     table.write_record(&header)?;
-    for result in results {
+    for (index, result) in results.iter().enumerate() {
         let mut row = vec![
             number(result.mesh_cycle + origin),
             number(result.torque),
@@ -66,6 +69,7 @@ pub fn series(path: &Path, results: &[PositionResult], origin: f64) -> Result<()
                 None => row.extend(std::iter::repeat_n(number(0.0), 5)),
             }
         }
+        row.extend(stresses.row(index, &pairs).into_iter().map(number));
         row.extend([
             result.status.name().to_owned(),
             number(result.stats.torque_residual),

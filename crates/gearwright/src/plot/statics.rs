@@ -5,6 +5,8 @@ use std::collections::BTreeSet;
 use fecm::statics::{PairState, PositionResult};
 use gear_geom::{GearPair, Member};
 
+use crate::output::stress::Stresses;
+
 use super::{COLOURS, Chart, FlankMap, Line, Pattern};
 
 const CYCLE: &str = "Mesh cycle";
@@ -110,6 +112,47 @@ pub fn per_pair(
         title: title.into(),
         x_label: CYCLE.into(),
         y_label: y_label.into(),
+        lines: lines.collect(),
+        from_zero: true,
+        logarithmic: false,
+    }
+}
+
+/// Largest stress-intensity factor along the crack fronts over the mesh cycle, by severity.
+#[must_use]
+pub fn crack_opening(title: &str, series: &[(&str, &[PositionResult], &Stresses)], origin: f64) -> Chart {
+    let patterns = [Pattern::Solid, Pattern::Dashed, Pattern::DashDotted, Pattern::Dotted];
+    let lines = series.iter().enumerate().map(|(index, (name, results, stresses))| {
+        let usable = results.iter().enumerate().filter(|(_, r)| r.status.is_usable());
+        let points = usable.filter_map(|(k, r)| stresses.k_one(k).map(|value| (r.mesh_cycle + origin, value)));
+        line(name, index, patterns[index % 4], points.collect())
+    });
+    Chart {
+        title: title.into(),
+        x_label: CYCLE.into(),
+        y_label: "Stress-intensity factor K_I (MPa √m)".into(),
+        lines: lines.collect(),
+        from_zero: true,
+        logarithmic: false,
+    }
+}
+
+/// Tension at the roots of both teeth of the tooth pair that has the most positions.
+#[must_use]
+pub fn root_tension(title: &str, series: &[PositionResult], stresses: &Stresses, origin: f64) -> Chart {
+    let pairs: BTreeSet<i32> = series.iter().flat_map(|r| r.loaded_pairs().map(|p| p.pair)).collect();
+    let loaded = |pair: i32| series.iter().filter(|r| r.loaded_pairs().any(|p| p.pair == pair)).count();
+    let shown = pairs.into_iter().max_by_key(|&pair| loaded(pair)).unwrap_or(0);
+    let lines = ["pinion", "gear"].into_iter().enumerate().map(|(member, name)| {
+        let points = series.iter().enumerate();
+        let points = points.map(|(k, r)| (r.mesh_cycle + origin, stresses.tension(k, member, shown).unwrap_or(0.0)));
+        let pattern = if member == 0 { Pattern::Solid } else { Pattern::Dashed };
+        line(name, member, pattern, points.collect())
+    });
+    Chart {
+        title: title.into(),
+        x_label: CYCLE.into(),
+        y_label: format!("Root stress of tooth pair {shown} (MPa)"),
         lines: lines.collect(),
         from_zero: true,
         logarithmic: false,

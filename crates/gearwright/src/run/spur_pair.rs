@@ -9,6 +9,7 @@ use gear_geom::Member;
 
 use crate::case::SpurPairCase;
 use crate::output::folder::ResultsFolder;
+use crate::output::stress::Stresses;
 use crate::output::{damage, geometry, summary, tables};
 use crate::plot::statics as figures;
 
@@ -63,22 +64,25 @@ pub fn run(case: &SpurPairCase, target: &Path, observer: &dyn RunObserver) -> an
             .solve_from(&request, (&model, &solved), &AsObserver(observer))
             .with_context(|| format!("the contact with {} cannot be solved", severity.label))?;
         times.damage += damaged_model.stats().condensation_time.as_secs_f64() + series.time.as_secs_f64();
-        damaged.push(Damaged { label: severity.label.clone(), model: damaged_model, series });
+        let stresses = read(case, &damaged_model, series.results.first(), &mut times)?;
+        damaged.push(Damaged { label: severity.label.clone(), model: damaged_model, series, stresses });
     }
 
     if observer.is_cancelled() {
         bail!("stopped; nothing was written");
     }
+    observer.stage("stresses");
+    let stresses = read(case, &model, solved.results.first(), &mut times)?;
     observer.stage("writing results");
     let started = Instant::now();
-    let results = summary::results(series, case.inputs.analysis.mesh_cycle_origin);
-    write_tables(case, &folder, series, map.as_ref())?;
+    let results = summary::results(series, &stresses, case.inputs.analysis.mesh_cycle_origin);
+    write_tables(case, &folder, series, &stresses, map.as_ref())?;
     let effects = write_damage(case, &folder, series, &damaged)?;
     if case.inputs.output.vtu {
         write_grids(case, &folder, &model, series)?;
     }
     if case.inputs.output.plots {
-        draw(case, &folder, series, map.as_ref(), stats.symmetric)?;
+        draw(case, &folder, series, &stresses, map.as_ref(), stats.symmetric)?;
     }
     times.output = started.elapsed().as_secs_f64();
     let all: Vec<&StaticsSeries> =
@@ -104,6 +108,21 @@ struct Damaged {
     label: String,
     model: PairModel,
     series: StaticsSeries,
+    stresses: Stresses,
+}
+
+/// Reads the stresses of a series.
+fn read(
+    case: &SpurPairCase,
+    model: &PairModel,
+    series: Option<&Vec<PositionResult>>,
+    times: &mut summary::Times,
+) -> anyhow::Result<Stresses> {
+    let started = Instant::now();
+    let series = series.map_or(&[][..], Vec::as_slice);
+    let stresses = Stresses::of(model, series, case.inputs.output.root_stress).context("stresses cannot be read")?;
+    times.stress += started.elapsed().as_secs_f64();
+    Ok(stresses)
 }
 
 impl Damaged {
@@ -137,11 +156,15 @@ fn write_damage(
     let origin = case.inputs.analysis.mesh_cycle_origin;
     let solved = || damaged.iter().filter_map(|d| d.series.results.first().map(|series| (d, series.as_slice())));
     let effects: Vec<damage::Effect> =
-        solved().map(|(d, series)| damage::effect(&d.label, healthy, series, origin)).collect();
+        solved().map(|(d, series)| damage::effect(&d.label, healthy, series, &d.stresses, origin)).collect();
     let Some((worst, worst_series)) = solved().next_back() else { return Ok(effects) };
     damage::table(&folder.file("damage.csv"), &effects)?;
-    for (index, (_, series)) in solved().enumerate() {
-        tables::series(&folder.file(&format!("series_damage_{}.csv", index + 1)), series, origin)?;
+    for (index, (d, series)) in solved().enumerate() {
+        let number = index + 1;
+        tables::series(&folder.file(&format!("series_damage_{number}.csv")), series, &d.stresses, origin)?;
+        if !d.stresses.tips.is_empty() {
+            d.stresses.write_fronts(&folder.file(&format!("crack_front_{number}.csv")), series, origin)?;
+        }
     }
     if case.inputs.output.plots {
         let title = case.inputs.title.as_str();
@@ -163,6 +186,13 @@ fn write_damage(
             figures::compared(title, "Mesh stiffness, average slope (N/µm)", &named, origin, average),
             "damage_average_stiffness",
         )?;
+        let factors: Vec<_> = solved()
+            .filter(|(d, _)| !d.stresses.tips.is_empty())
+            .map(|(d, s)| (d.label.as_str(), s, &d.stresses))
+            .collect();
+        if !factors.is_empty() {
+            save(figures::crack_opening(title, &factors, origin), "damage_stress_intensity")?;
+        }
         let heading = format!("Largest pressure on the pinion flank (MPa), {}", worst.label);
         let symmetric = worst.model.stats().symmetric;
         let map = figures::flank_pressure(
@@ -194,10 +224,11 @@ fn write_tables(
     case: &SpurPairCase,
     folder: &ResultsFolder,
     series: &[PositionResult],
+    stresses: &Stresses,
     map: Option<&StaticsSeries>,
 ) -> anyhow::Result<()> {
     let origin = case.inputs.analysis.mesh_cycle_origin;
-    tables::series(&folder.file("series.csv"), series, origin)?;
+    tables::series(&folder.file("series.csv"), series, stresses, origin)?;
     if let Some(map) = map {
         tables::force_deflection(&folder.file("force_deflection.csv"), &map.results, origin)?;
     }
@@ -234,6 +265,7 @@ fn draw(
     case: &SpurPairCase,
     folder: &ResultsFolder,
     series: &[PositionResult],
+    stresses: &Stresses,
     map: Option<&StaticsSeries>,
     mirrored: bool,
 ) -> anyhow::Result<()> {
@@ -251,6 +283,9 @@ fn draw(
     )?;
     save(figures::per_pair(title, "Peak pressure (MPa)", series, origin, |p| p.peak_pressure * 1e-6), "peak_pressure")?;
     save(figures::per_pair(title, "Contact width (mm)", series, origin, |p| p.contact_width * 1e3), "contact_width")?;
+    if !stresses.roots.is_empty() {
+        save(figures::root_tension(title, series, stresses, origin), "root_stress")?;
+    }
     if let Some(map) = figures::flank_pressure(
         "Largest pressure on the pinion flank (MPa)",
         series,

@@ -590,10 +590,12 @@ pub struct Output {
     /// Mesh cycle of the deformed shape and the pressure map; default: the largest transmission error.
     #[schemars(range(min = -100000.0, max = 100000.0))]
     pub snapshot_mesh_cycle: Option<f64>,
+    /// Stress at the roots of the loaded teeth at every position: columns of the series, a plot, a line of the summary.
+    pub root_stress: bool,
 }
 
 impl Default for Output {
     fn default() -> Self {
-        Self { plots: true, vtu: true, snapshot_mesh_cycle: None }
+        Self { plots: true, vtu: true, snapshot_mesh_cycle: None, root_stress: true }
     }
 }

@@ -1,0 +1,161 @@
+//! Root stresses and stress-intensity factors of a series: columns of its table, a table along crack fronts, extremes.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use fecm::FecmError;
+use fecm::statics::{CrackTip, PairModel, PositionResult, RootStress};
+use serde::Serialize;
+
+/// What is read from the stresses of every position of a series.
+pub struct Stresses {
+    /// Root stresses; empty unless asked for.
+    pub roots: Vec<Vec<RootStress>>,
+    /// Crack tips; empty without cracks.
+    pub tips: Vec<Vec<CrackTip>>,
+}
+
+/// Largest root stress of a gear.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct LargestRoot {
+    /// Stress along the profile's tangent (MPa), negative in compression.
+    pub stress_mpa: f64,
+    /// Mesh cycle.
+    pub at: f64,
+    /// Tooth pair.
+    pub pair: i32,
+    /// Angle between the tangent and the tooth's centre line (deg).
+    pub tangent_angle_deg: f64,
+    /// Face position (mm).
+    pub face_mm: f64,
+}
+
+/// Names of the gears in columns.
+const GEARS: [&str; 2] = ["pinion", "gear"];
+/// Pa sqrt(m) to MPa sqrt(m).
+const MEGA: f64 = 1e-6;
+
+impl Stresses {
+    /// Reads a series whose pressures were kept.
+    ///
+    /// # Errors
+    /// Those of the readers.
+    pub fn of(model: &PairModel, series: &[PositionResult], roots: bool) -> Result<Self, FecmError> {
+        let roots = if roots { model.root_stress_reader().read_all(series)? } else { Vec::new() };
+        let tips = model.crack_tip_reader();
+        let tips = if tips.is_empty() { Vec::new() } else { tips.read_all(series)? };
+        Ok(Self { roots, tips })
+    }
+
+    /// Largest tension (0) or compression (1) at the roots of the pinion (0) or gear (1) over the positions; `origin` is added to mesh cycles.
+    #[must_use]
+    pub fn largest_root(
+        &self,
+        series: &[PositionResult],
+        member: usize,
+        side: usize,
+        origin: f64,
+    ) -> Option<LargestRoot> {
+        let usable = series.iter().zip(&self.roots).filter(|(position, _)| position.status.is_usable());
+        let all = usable.flat_map(|(position, roots)| roots.iter().map(|root| (position.mesh_cycle + origin, root)));
+        let peaks = all.filter(|(_, root)| root.member == member).map(|(at, root)| {
+            let peak = if side == 0 { root.tension } else { root.compression };
+            LargestRoot {
+                stress_mpa: peak.stress * MEGA,
+                at,
+                pair: root.pair,
+                tangent_angle_deg: peak.tangent_angle.to_degrees(),
+                face_mm: peak.face * 1e3,
+            }
+        });
+        peaks.max_by(|a, b| a.stress_mpa.abs().total_cmp(&b.stress_mpa.abs()))
+    }
+
+    /// Largest `K_I` over positions and along the fronts (MPa sqrt(m)).
+    #[must_use]
+    pub fn largest_k_one(&self) -> Option<f64> {
+        self.tips.iter().flatten().map(|tip| tip.k_one * MEGA).max_by(f64::total_cmp)
+    }
+
+    /// Largest `K_I` along the fronts at a position (MPa sqrt(m)).
+    #[must_use]
+    pub fn k_one(&self, position: usize) -> Option<f64> {
+        self.tips.get(position)?.iter().map(|tip| tip.k_one * MEGA).max_by(f64::total_cmp)
+    }
+
+    /// Tension at the root of a gear's tooth at a position (MPa), if it is loaded.
+    #[must_use]
+    pub fn tension(&self, position: usize, member: usize, pair: i32) -> Option<f64> {
+        let root = self.roots.get(position)?.iter().find(|root| root.member == member && root.pair == pair)?;
+        Some(root.tension.stress * MEGA)
+    }
+
+    /// Teeth with cracks: member and tooth.
+    fn cracked(&self) -> BTreeSet<(usize, i32)> {
+        self.tips.iter().flatten().map(|tip| (tip.member, tip.tooth)).collect()
+    }
+
+    /// Columns for tooth pairs: names.
+    #[must_use]
+    pub fn header(&self, pairs: &BTreeSet<i32>) -> Vec<String> {
+        let mut names = Vec::new();
+        if !self.roots.is_empty() {
+            for pair in pairs {
+                for gear in GEARS {
+                    names.extend(["tension", "compression"].map(|side| format!("pair_{pair}_{gear}_root_{side}_mpa")));
+                }
+            }
+        }
+        for (member, tooth) in self.cracked() {
+            let gear = GEARS[member];
+            names.extend(["one", "two"].map(|mode| format!("{gear}_tooth_{tooth}_k_{mode}_mpa_sqrt_m")));
+        }
+        names
+    }
+
+    /// The values of these columns at a position: root stresses 0 without load; the factors where `K_I` is largest along the front.
+    #[must_use]
+    pub fn row(&self, position: usize, pairs: &BTreeSet<i32>) -> Vec<f64> {
+        let mut values = Vec::new();
+        if let Some(roots) = self.roots.get(position) {
+            for &pair in pairs {
+                for member in 0..2 {
+                    let root = roots.iter().find(|root| root.member == member && root.pair == pair);
+                    let both = root.map_or([0.0; 2], |root| [root.tension.stress, root.compression.stress]);
+                    values.extend(both.map(|stress| stress * MEGA));
+                }
+            }
+        }
+        for crack in self.cracked() {
+            let front = self.tips.get(position).into_iter().flatten();
+            let own = front.filter(|tip| (tip.member, tip.tooth) == crack);
+            let most = own.max_by(|a, b| a.k_one.total_cmp(&b.k_one));
+            values.extend(most.map_or([0.0; 2], |tip| [tip.k_one * MEGA, tip.k_two * MEGA]));
+        }
+        values
+    }
+
+    /// Writes the factors along all fronts at all positions; `origin` is added to the mesh cycle.
+    ///
+    /// # Errors
+    /// I/O errors.
+    pub fn write_fronts(&self, path: &Path, series: &[PositionResult], origin: f64) -> Result<(), csv::Error> {
+        let mut table = csv::Writer::from_path(path)?;
+        table.write_record(["mesh_cycle", "on", "tooth", "face_mm", "k_one_mpa_sqrt_m", "k_two_mpa_sqrt_m"])?;
+        for (position, tips) in series.iter().zip(&self.tips) {
+            for tip in tips {
+                let number = |value: f64| format!("{value:.9e}");
+                table.write_record([
+                    number(position.mesh_cycle + origin),
+                    GEARS[tip.member].to_owned(),
+                    tip.tooth.to_string(),
+                    number(tip.face * 1e3),
+                    number(tip.k_one * MEGA),
+                    number(tip.k_two * MEGA),
+                ])?;
+            }
+        }
+        table.flush()?;
+        Ok(())
+    }
+}
