@@ -243,7 +243,8 @@ impl GearBody {
     }
 
     /// The sector of a healthy tooth, which the gear's modes are made of.
-    pub(crate) fn healthy_sector(&self) -> &Arc<ToothSector> {
+    #[must_use]
+    pub fn healthy_sector(&self) -> &Arc<ToothSector> {
         &self.healthy
     }
 
@@ -275,12 +276,6 @@ impl GearBody {
     #[must_use]
     pub fn sector(&self, tooth: i32) -> &ToothSector {
         self.damaged.get(&tooth.rem_euclid(self.teeth)).unwrap_or(&self.healthy)
-    }
-
-    /// The sector of all teeth without a crack of their own.
-    #[must_use]
-    pub fn healthy_sector(&self) -> &ToothSector {
-        &self.healthy
     }
 
     /// Numbers in `0..teeth` of the teeth that have a sector of their own, ascending.

@@ -55,7 +55,7 @@ fn roc(case: &RecordingCase, channel: &str, shown: &[&Detected]) -> MarkedChart 
     lines.push(Line { name: "chance: 0.500".into(), points: chance, pattern: Pattern::Dotted, colour: "#9a9a9a" });
     let title = heading(case, &format!("receiver operating characteristic of {channel}, area under it"));
     let chart = chart(title, "False-alarm rate", "Detection rate".into(), lines);
-    MarkedChart { chart, marks: Vec::new(), x_range: Some((0.0, 1.0)), y_up_to: Some(1.0) }
+    MarkedChart { chart, marks: Vec::new(), bands: Vec::new(), x_range: Some((0.0, 1.0)), y_up_to: Some(1.0) }
 }
 
 fn over_severity(case: &RecordingCase, channel: &str, shown: &[&Detected]) -> MarkedChart {
@@ -71,5 +71,5 @@ fn over_severity(case: &RecordingCase, channel: &str, shown: &[&Detected]) -> Ma
     let title = heading(case, &format!("probability of detection of {channel}"));
     let mut chart = chart(title, "Severity", "Share above the threshold".into(), lines);
     chart.from_zero = true;
-    MarkedChart { chart, marks: Vec::new(), x_range: None, y_up_to: Some(1.0) }
+    MarkedChart { chart, marks: Vec::new(), bands: Vec::new(), x_range: None, y_up_to: Some(1.0) }
 }
