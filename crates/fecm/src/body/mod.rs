@@ -277,12 +277,6 @@ impl GearBody {
         self.damaged.get(&tooth.rem_euclid(self.teeth)).unwrap_or(&self.healthy)
     }
 
-    /// The sector of all teeth without a crack of their own.
-    #[must_use]
-    pub fn healthy_sector(&self) -> &ToothSector {
-        &self.healthy
-    }
-
     /// Numbers in `0..teeth` of the teeth that have a sector of their own, ascending.
     pub fn damaged_teeth(&self) -> impl Iterator<Item = i32> + '_ {
         self.damaged.keys().copied()
