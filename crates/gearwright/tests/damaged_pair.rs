@@ -73,7 +73,7 @@ fn sweep_of_cracks_and_pits_leaves_tables_plots_and_grids() {
         ),
     ] {
         let scratch = Scratch::new();
-        let output = run(&scratch, model, damage);
+        let output = run(&scratch, model, &format!("{damage}[output]\nroot_stress = true\n"));
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let folder = scratch.path().join("out/case");
         let increase = column(&folder.join("damage.csv"), "ste_increase_max_percent");

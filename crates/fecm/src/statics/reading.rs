@@ -67,12 +67,15 @@ impl PairModel {
     }
 }
 
+/// Matrices by family, tooth read and tooth loaded.
+type Between = BTreeMap<(usize, i32, i32), Arc<Mat<f64>>>;
+
 /// Functionals of one sector, carried through its factorisation.
 pub(super) struct SectorReading {
     families: Vec<FamilyReading>,
     count: usize,
-    /// `(X^T r_I - r_C)^T G_ab` by family, tooth read and tooth loaded; made when first asked for.
-    between: Mutex<BTreeMap<(usize, i32, i32), Arc<Mat<f64>>>>,
+    /// `(X^T r_I - r_C)^T G_ab`, made when first asked for.
+    between: Mutex<Between>,
 }
 
 struct FamilyReading {

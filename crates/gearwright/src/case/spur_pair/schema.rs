@@ -596,6 +596,6 @@ pub struct Output {
 
 impl Default for Output {
     fn default() -> Self {
-        Self { plots: true, vtu: true, snapshot_mesh_cycle: None, root_stress: true }
+        Self { plots: true, vtu: true, snapshot_mesh_cycle: None, root_stress: false }
     }
 }
