@@ -147,7 +147,8 @@ impl PairModel {
         rotation = rotation.min(most);
         let mut warm = start.cloned();
         // rows that were in contact at the start; given up as soon as they turn out too few
-        let known = start.filter(|_| *scope == GridScope::default());
+        // torques around this one need room to widen
+        let known = start.filter(|_| *scope == GridScope::default() && !request.stiffness_difference);
         let mut spans = known.map_or_else(Vec::new, |start| start.spans(request.mesh_cycle, cell));
         let mut stats = PositionStats::default();
         let mut outcome: Option<Settled> = None;
