@@ -174,6 +174,10 @@ fn invariant_solved_from_the_sound_pair() {
         assert_eq!(taken > 8, must_take_over, "{damage:?}: {taken} taken over");
         let again = damaged.solve_from(&request, (&healthy, &sound), &()).unwrap();
         assert_eq!(helped.results, again.results);
+        // other requests are not answered by this one
+        let asks_more = StaticsRequest { stiffness_difference: true, ..request.clone() };
+        let asked = damaged.solve_from(&asks_more, (&healthy, &sound), &()).unwrap();
+        assert!(asked.results[0].iter().all(|at| at.stats.solver.solves > 0));
     }
 }
 

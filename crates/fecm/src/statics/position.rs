@@ -147,7 +147,8 @@ impl PairModel {
         rotation = rotation.min(most);
         let mut warm = start.cloned();
         // rows that were in contact at the start; given up as soon as they turn out too few
-        let known = start.filter(|_| *scope == GridScope::default());
+        // torques around this one need room to widen
+        let known = start.filter(|_| *scope == GridScope::default() && !request.stiffness_difference);
         let mut spans = known.map_or_else(Vec::new, |start| start.spans(request.mesh_cycle, cell));
         let mut stats = PositionStats::default();
         let mut outcome: Option<Settled> = None;
@@ -182,8 +183,14 @@ impl PairModel {
             rotation += change;
             let active = from_cells(&grid, request.mesh_cycle, &solution.forces, 0.5 * self.pairing.never());
             let start = Start { closing: rotation - no_load, cell, reach, columns: grid.face.centres.len(), active };
-            warm = Some(start.clone());
+            let before = warm.replace(start.clone());
             let crowded = grid_is_crowded(&grid, &solution.forces);
+            if crowded && !spans.is_empty() {
+                // too few rows: once more from where this step began, as if there had been all
+                spans.clear();
+                (rotation, warm) = (grid_rotation, before);
+                continue;
+            }
             let moved = change.abs() * base_radius > ROTATION_TOLERANCE * (rotation - no_load).abs() * base_radius;
             let converged = solution.is_converged();
             let fillet = touches_fillet(&grid, &solution.forces);
@@ -198,9 +205,7 @@ impl PairModel {
                 settled.status = PositionStatus::Overloaded;
                 break;
             }
-            if crowded && !spans.is_empty() {
-                spans.clear();
-            } else if crowded && cell < 0.75 * self.widest_cell() {
+            if crowded && cell < 0.75 * self.widest_cell() {
                 // the contact is wider than the load along the face made believe: coarser cells resolve it as well
                 cell = on_ladder(CELL_STEP * cell);
             } else if crowded {

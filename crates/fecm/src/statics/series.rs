@@ -179,19 +179,20 @@ impl PairModel {
             && result.torque > 0.0
             && has_difference == request.stiffness_difference
             && !result.patches.is_empty()
-            && result.patches.iter().all(|patch| self.is_sound_below(patch, known.model.face.mirrored))
+            && (!has_difference || result.patches.len() == result.pairs.len())
+            && result.patches.iter().all(|patch| self.is_sound_below(patch, known.model.face.mirrored, has_difference))
             && touch_is_kept()
     }
 
-    /// Whether no damage lies under the loaded cells of a patch, nor under the rows next to them.
-    fn is_sound_below(&self, patch: &PressurePatch, mirrored: bool) -> bool {
+    /// Whether no damage lies under the loaded cells of a patch, nor under the rows next to them; or under any of its cells.
+    fn is_sound_below(&self, patch: &PressurePatch, mirrored: bool, any: bool) -> bool {
         let rows = patch.pressure.len();
         (0..rows).all(|row| {
             let near = row.saturating_sub(1)..(row + 2).min(rows);
             let rolls = [patch.pinion_roll[row], patch.wheel_roll[row]];
             let depth = |z: f64| self.pairing.damage_depth(patch.pair, rolls, z);
             patch.face.iter().enumerate().all(|(column, &z)| {
-                let loaded = patch.pressure[near.clone()].iter().any(|row| row[column] > 0.0);
+                let loaded = any || patch.pressure[near.clone()].iter().any(|row| row[column] > 0.0);
                 !loaded || (depth(z) == 0.0 && (!mirrored || depth(-z) == 0.0))
             })
         })
