@@ -1,5 +1,6 @@
-//! Figures: line charts and flank maps as SVG and PNG. The only place that names the plotting library.
+//! Figures: line charts, flank maps and drawings as SVG and PNG. The only place that names the plotting library.
 
+pub mod drawing;
 pub mod lumped;
 pub mod recording;
 pub mod statics;
@@ -7,7 +8,8 @@ pub mod statics;
 use std::path::Path;
 
 use kuva::prelude::{
-    ColorMap, Heatmap, Layout, LegendPosition, LinePlot, Plot, ReferenceLine, render_to_png, render_to_svg,
+    ColorMap, Heatmap, Layout, LegendPosition, LinePlot, MarkerShape, Plot, ReferenceLine, ScatterPlot, render_to_png,
+    render_to_svg,
 };
 
 /// Line patterns, told apart without colour.
@@ -22,6 +24,12 @@ pub enum Pattern {
     Dotted,
     /// Dash-dotted.
     DashDotted,
+    /// Circles at the points, no line.
+    Circles,
+    /// Squares at the points, no line.
+    Squares,
+    /// Crosses at the points, no line.
+    Crosses,
 }
 
 /// One line of a chart.
@@ -118,16 +126,43 @@ fn journal(layout: Layout) -> Layout {
         .with_show_grid(false)
 }
 
+fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    std::fs::write(path, bytes).map_err(|e| format!("{}: {e}", path.display()))
+}
+
 fn save(
     make: impl Fn() -> (Vec<Plot>, Layout),
     folder: &dyn Fn(&str) -> std::path::PathBuf,
     name: &str,
 ) -> Result<(), String> {
-    let write = |path: &Path, bytes: &[u8]| std::fs::write(path, bytes).map_err(|e| format!("{}: {e}", path.display()));
     let (plots, layout) = make();
     write(&folder(&format!("{name}.svg")), render_to_svg(plots, layout).as_bytes())?;
     let (plots, layout) = make();
     write(&folder(&format!("{name}.png")), &render_to_png(plots, layout, PNG_SCALE)?)
+}
+
+impl Line {
+    fn draw(&self) -> Plot {
+        let marker = match self.pattern {
+            Pattern::Circles => Some(MarkerShape::Circle),
+            Pattern::Squares => Some(MarkerShape::Square),
+            Pattern::Crosses => Some(MarkerShape::Cross),
+            _ => None,
+        };
+        if let Some(marker) = marker {
+            let plot = ScatterPlot::new().with_data(self.points.clone()).with_color(self.colour).with_marker(marker);
+            let plot = plot.with_size(4.0);
+            return if self.name.is_empty() { plot } else { plot.with_legend(self.name.clone()) }.into();
+        }
+        let plot = LinePlot::new().with_data(self.points.clone()).with_color(self.colour).with_stroke_width(1.8);
+        let plot = match self.pattern {
+            Pattern::Dashed => plot.with_dashed(),
+            Pattern::Dotted => plot.with_dotted(),
+            Pattern::DashDotted => plot.with_dashdot(),
+            _ => plot,
+        };
+        if self.name.is_empty() { plot } else { plot.with_legend(self.name.clone()) }.into()
+    }
 }
 
 impl Chart {
@@ -140,21 +175,7 @@ impl Chart {
     }
 
     fn draw(&self) -> (Vec<Plot>, Layout) {
-        let plots: Vec<Plot> = self
-            .lines
-            .iter()
-            .map(|line| {
-                let mut plot =
-                    LinePlot::new().with_data(line.points.clone()).with_color(line.colour).with_stroke_width(1.8);
-                plot = match line.pattern {
-                    Pattern::Solid => plot,
-                    Pattern::Dashed => plot.with_dashed(),
-                    Pattern::Dotted => plot.with_dotted(),
-                    Pattern::DashDotted => plot.with_dashdot(),
-                };
-                if line.name.is_empty() { plot } else { plot.with_legend(line.name.clone()) }.into()
-            })
-            .collect();
+        let plots: Vec<Plot> = self.lines.iter().map(Line::draw).collect();
         let mut layout = Layout::auto_from_plots(&plots)
             .with_title(self.title.clone())
             .with_x_label(self.x_label.clone())
