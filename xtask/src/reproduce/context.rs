@@ -1,0 +1,123 @@
+//! What a figure can ask for: cases at the chosen level, static analyses, lumped-parameter runs.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+use anyhow::{Context as _, bail};
+use gearwright::case::{self, Case, LumpedPairCase, SpurPairCase};
+use gearwright::output::lumped_summary::Times;
+use gearwright::run::lumped_pair::analyses::{self, Findings};
+use gearwright::run::lumped_pair::states::{self, State};
+
+use super::statics::Statics;
+use super::store::Store;
+use super::{Level, root};
+
+/// Keys of spur-pair cases that the quick level sets, with the values.
+pub const QUICK: [(&str, &str, f64); 4] = [
+    ("analysis", "positions_per_cycle", 25.0),
+    ("numerics", "face_cells", 24.0),
+    ("numerics", "face_order", 4.0),
+    ("numerics", "cells_per_half_width", 5.0),
+];
+/// Torques of a force-deflection map at the quick level.
+pub const QUICK_TORQUES: f64 = 12.0;
+
+/// A lumped-parameter case, run.
+pub struct Lumped {
+    /// The case.
+    pub case: LumpedPairCase,
+    /// States, the healthy one first.
+    pub states: Vec<State>,
+    /// What was found.
+    pub findings: Findings,
+}
+
+/// What a figure can ask for.
+pub struct Context<'a> {
+    store: &'a Store,
+    level: Level,
+    lumped: RefCell<BTreeMap<String, Rc<Lumped>>>,
+}
+
+impl<'a> Context<'a> {
+    /// Nothing computed yet.
+    pub fn new(store: &'a Store, level: Level) -> Self {
+        Self { store, level, lumped: RefCell::default() }
+    }
+
+    /// The level.
+    pub fn level(&self) -> Level {
+        self.level
+    }
+
+    /// The text of a case file as it is run at this level.
+    pub fn text(&self, file: &str) -> anyhow::Result<String> {
+        let path = root().join("configs").join(file);
+        let text = std::fs::read_to_string(&path).with_context(|| format!("configs/{file} cannot be read"))?;
+        let mut document: toml::Table = text.parse().with_context(|| format!("configs/{file}"))?;
+        if self.level == Level::Full || document.get("kind").and_then(|k| k.as_str()) != Some("spur-pair") {
+            return Ok(text);
+        }
+        let as_number = |value: f64| toml::Value::Integer(value as i64);
+        for (section, key, value) in QUICK {
+            let table = document.entry(section).or_insert_with(|| toml::Table::new().into());
+            if let Some(table) = table.as_table_mut() {
+                // cells per half width is a decimal key
+                let value = if key == "cells_per_half_width" { toml::Value::Float(value) } else { as_number(value) };
+                table.insert(key.into(), value);
+            }
+        }
+        if let Some(torques) = document.get_mut("load").and_then(|l| l.get_mut("map_torques")) {
+            *torques = as_number(QUICK_TORQUES);
+        }
+        Ok(document.to_string())
+    }
+
+    /// What a figure's result depends on: its case files and those they name.
+    pub fn key(&self, files: &[&str]) -> anyhow::Result<String> {
+        let mut key = self.level.name().to_owned();
+        for file in files {
+            let text = self.text(file)?;
+            for line in text.lines().filter(|line| line.trim_start().starts_with("spur_pair")) {
+                if let Some(other) = line.split('"').nth(1) {
+                    key.push_str(&std::fs::read_to_string(root().join("configs").join(other))?);
+                }
+            }
+            key.push_str(&text);
+        }
+        Ok(key)
+    }
+
+    fn case(&self, file: &str) -> anyhow::Result<Case> {
+        Ok(case::from_text(&self.text(file)?, &root().join("configs").join(file))?)
+    }
+
+    /// A spur-pair case.
+    pub fn spur_pair(&self, file: &str) -> anyhow::Result<SpurPairCase> {
+        match self.case(file)? {
+            Case::SpurPair(case) => Ok(*case),
+            other => bail!("configs/{file} is a {}, not a spur-pair", other.kind()),
+        }
+    }
+
+    /// Static analysis of a spur-pair case and all its severities.
+    pub fn statics(&self, file: &str) -> anyhow::Result<Statics> {
+        let name = file.trim_end_matches(".toml");
+        self.store.study(name, &self.key(&[file])?, || Statics::compute(&self.spur_pair(file)?))
+    }
+
+    /// A lumped-parameter case with all its analyses; run once for all figures that ask for it.
+    pub fn lumped(&self, file: &str) -> anyhow::Result<Rc<Lumped>> {
+        if let Some(run) = self.lumped.borrow().get(file) {
+            return Ok(Rc::clone(run));
+        }
+        let Case::LumpedPair(case) = self.case(file)? else { bail!("configs/{file} is not a lumped-pair") };
+        let states = states::build(&case, &())?;
+        let findings = analyses::run(&case, &states, &(), &mut Times::default())?;
+        let run = Rc::new(Lumped { case: *case, states, findings });
+        self.lumped.borrow_mut().insert(file.into(), Rc::clone(&run));
+        Ok(run)
+    }
+}
