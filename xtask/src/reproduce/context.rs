@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use anyhow::{Context as _, bail};
-use gearwright::case::{self, Case, LumpedPairCase, SpurPairCase};
+use gearwright::case::{self, Case, SpurPairCase};
 use gearwright::output::lumped_summary::Times;
 use gearwright::run::lumped_pair::analyses::{self, Findings};
 use gearwright::run::lumped_pair::states::{self, State};
@@ -26,8 +26,6 @@ pub const QUICK_TORQUES: f64 = 12.0;
 
 /// A lumped-parameter case, run.
 pub struct Lumped {
-    /// The case.
-    pub case: LumpedPairCase,
     /// States, the healthy one first.
     pub states: Vec<State>,
     /// What was found.
@@ -45,11 +43,6 @@ impl<'a> Context<'a> {
     /// Nothing computed yet.
     pub fn new(store: &'a Store, level: Level) -> Self {
         Self { store, level, lumped: RefCell::default() }
-    }
-
-    /// The level.
-    pub fn level(&self) -> Level {
-        self.level
     }
 
     /// The text of a case file as it is run at this level.
@@ -116,7 +109,7 @@ impl<'a> Context<'a> {
         let Case::LumpedPair(case) = self.case(file)? else { bail!("configs/{file} is not a lumped-pair") };
         let states = states::build(&case, &())?;
         let findings = analyses::run(&case, &states, &(), &mut Times::default())?;
-        let run = Rc::new(Lumped { case: *case, states, findings });
+        let run = Rc::new(Lumped { states, findings });
         self.lumped.borrow_mut().insert(file.into(), Rc::clone(&run));
         Ok(run)
     }

@@ -45,6 +45,7 @@ pub fn write(folder: &Path, all: &[Done], printed: &Printed, level: Level) -> an
     for done in all {
         figure(&mut page, folder, done, printed)?;
     }
+    others(&mut page, printed)?;
     cases(&mut page, all)?;
     page.push_str("</body></html>\n");
     let file = folder.join("index.html");
@@ -203,6 +204,21 @@ fn content(page: &mut String, folder: &Path, saved: &Saved) -> anyhow::Result<()
         saved.notes.iter().for_each(|note| *page += &format!("<li>{}</li>", escaped(note)));
         page.push_str("</ul>\n");
     }
+    Ok(())
+}
+
+/// Printed numbers that are no results.
+fn others(page: &mut String, printed: &Printed) -> anyhow::Result<()> {
+    page.push_str(
+        "<h2>Printed numbers that are not compared</h2>\n<details><summary>Input, repetitions, results of others</summary>\n\
+         <table><thead><tr><th>what</th><th>sections</th><th>numbers</th></tr></thead><tbody>\n",
+    );
+    for other in &printed.other {
+        let sections = if other.sections.iter().any(String::is_empty) { "all".into() } else { other.sections.join(", ") };
+        let (reason, numbers) = (escaped(&other.reason), escaped(&other.numbers.join("; ")));
+        write!(page, "<tr><td>{reason}</td><td>{sections}</td><td>{numbers}</td></tr>\n")?;
+    }
+    page.push_str("</tbody></table></details>\n");
     Ok(())
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context as _, bail};
 
-use super::printed::Printed;
+use super::printed::{Number, Printed};
 
 /// Units as they are spelt, and as the data file has them; longer spellings first.
 const UNITS: [(&str, &str); 46] = [
@@ -56,7 +56,7 @@ const UNITS: [(&str, &str); 46] = [
     ("N", "N"),
 ];
 
-/// A number with its unit somewhere in the text.
+/// A number somewhere in the text, with its unit or "".
 #[derive(Debug, Clone, PartialEq)]
 struct Mention {
     section: String,
@@ -79,11 +79,12 @@ pub fn check(printed: &Printed, text: &Path) -> anyhow::Result<()> {
         let result = printed.result.iter().any(|n| same(n.value, &n.unit) && covers(&n.sections, &m.section));
         result || others.iter().any(|(value, unit, sections)| same(*value, unit) && covers(sections, &m.section))
     };
-    let missing: Vec<&Mention> = mentions.iter().filter(|m| !known(m)).collect();
+    let with_unit = || mentions.iter().filter(|m| !m.unit.is_empty());
+    let missing: Vec<&Mention> = with_unit().filter(|m| !known(m)).collect();
     for m in &missing {
         println!("{} (line {}): {} {}: ...{}...", m.section, m.line, m.value, m.unit, m.context);
     }
-    println!("{} numbers with a unit, {} of them not in the data file", mentions.len(), missing.len());
+    println!("{} numbers with a unit, {} of them not in the data file", with_unit().count(), missing.len());
     let unused = unused(printed, &mentions);
     for (what, sections) in &unused {
         println!("in the data file, not in the text: {what} in {sections:?}");
@@ -114,25 +115,17 @@ fn covers(sections: &[String], section: &str) -> bool {
         .any(|s| s.is_empty() || section == s || section.starts_with(s) && section[s.len()..].starts_with('.'))
 }
 
-/// Results with a unit that the text does not have where the file says.
+/// Results that the text does not have where the file says, with their unit or (lists, headings of tables) without.
 fn unused<'a>(printed: &'a Printed, mentions: &[Mention]) -> Vec<(String, &'a [String])> {
-    let mut all = Vec::new();
-    for n in printed.result.iter().filter(|n| UNITS.iter().any(|(_, unit)| *unit == n.unit)) {
-        let there = |m: &Mention| {
-            m.unit == n.unit
-                && (m.value - n.value).abs() <= 1e-9 * n.value.abs().max(1.0)
-                && covers(&n.sections, &m.section)
-        };
-        // rows of tables carry their unit in the heading, and zeros in words
-        let in_table = n.place.starts_with("Table") || n.value == 0.0;
-        if !in_table && !mentions.iter().any(there) {
-            all.push((format!("{} {} ({})", n.value, n.unit, n.key), n.sections.as_slice()));
-        }
-    }
-    all
+    let there = |n: &Number, m: &Mention| {
+        let unit = m.unit.is_empty() || m.unit == n.unit || n.unit.is_empty();
+        unit && (m.value - n.value).abs() <= 1e-9 * n.value.abs().max(1.0) && covers(&n.sections, &m.section)
+    };
+    let absent = printed.result.iter().filter(|n| !mentions.iter().any(|m| there(n, m)));
+    absent.map(|n| (format!("{} {} ({})", n.value, n.unit, n.key), n.sections.as_slice())).collect()
 }
 
-/// Numbers with units from chapter 2 to the references.
+/// Numbers from chapter 2 to the references.
 fn mentions(text: &str) -> Vec<Mention> {
     let mut section = String::new();
     let mut all = Vec::new();
@@ -167,7 +160,7 @@ fn heading(line: &str) -> Option<Heading> {
             let chapter = parts.next().filter(|c| ["2", "3", "4", "5", "6", "7", "8", "A", "B"].contains(c))?;
             let numbers: Vec<&str> = parts.collect();
             let is_number = |p: &&str| !p.is_empty() && p.len() < 3 && p.bytes().all(|b| b.is_ascii_digit());
-            let titled = rest.chars().next().is_some_and(char::is_alphabetic);
+            let titled = rest.chars().next().is_some_and(char::is_uppercase);
             // a sentence does not begin with a section's number
             let fits = !numbers.is_empty() && numbers.iter().all(is_number) && titled && !line.contains('\t');
             fits.then(|| Heading::Section(format!("{chapter}.{}", numbers.join("."))))
@@ -200,7 +193,10 @@ fn in_line(line: &str, section: &str, number: usize, all: &mut Vec<Mention>) {
         let Some((value, start)) = value(line, start, at) else { continue };
         let rest = &line[at..];
         let after = rest.trim_start_matches([' ', '-', '\u{a0}']);
-        let Some((_, unit)) = UNITS.iter().find(|(spelt, _)| is_unit(after, spelt)) else { continue };
+        // "1.62 mesh cycle" and "mesh cycle 1.62"
+        let named = line[..start].trim_end().ends_with("mesh cycle");
+        let found = UNITS.iter().find(|(spelt, _)| is_unit(after, spelt)).map(|(_, unit)| *unit);
+        let unit = found.unwrap_or(if named { "cycle" } else { "" });
         let context = |from: usize| {
             let low = (0..=from.saturating_sub(60)).rev().find(|k| line.is_char_boundary(*k)).unwrap_or(0);
             let high = (at + 30..line.len()).find(|k| line.is_char_boundary(*k)).unwrap_or(line.len());
@@ -210,6 +206,9 @@ fn in_line(line: &str, section: &str, number: usize, all: &mut Vec<Mention>) {
             all.push(Mention { section: section.into(), line: number, value, unit, context: context(from) });
         };
         add(value, start);
+        if unit.is_empty() {
+            continue;
+        }
         // the numbers before it in a list share its unit
         let mut before = start;
         while let Some((value, from)) = listed_before(line, before) {
