@@ -15,12 +15,8 @@ use super::store::Store;
 use super::{Level, root};
 
 /// Keys of spur-pair cases that the quick level sets, with the values.
-pub const QUICK: [(&str, &str, f64); 4] = [
-    ("analysis", "positions_per_cycle", 25.0),
-    ("numerics", "face_cells", 24.0),
-    ("numerics", "face_order", 4.0),
-    ("numerics", "cells_per_half_width", 5.0),
-];
+pub const QUICK: [(&str, &str, f64); 3] =
+    [("numerics", "face_cells", 24.0), ("numerics", "face_order", 4.0), ("numerics", "cells_per_half_width", 5.0)];
 /// Torques of a force-deflection map at the quick level.
 pub const QUICK_TORQUES: f64 = 12.0;
 

@@ -65,7 +65,7 @@ impl Panel {
             logarithmic: false,
         };
         let marked = MarkedChart { chart, marks: Vec::new(), x_range: None, y_up_to: None };
-        Self { letter, about: about.into(), picture: Picture::Chart(marked) }
+        Self { letter, about: about.into(), picture: Picture::Chart(marked) }.tight()
     }
 
     /// A drawing.
@@ -83,6 +83,14 @@ impl Panel {
     pub fn from_zero(mut self) -> Self {
         self.marked(|c| c.chart.from_zero = true);
         self
+    }
+
+    /// The same from the first abscissa to the last.
+    pub fn tight(self) -> Self {
+        let Picture::Chart(chart) = &self.picture else { return self };
+        let abscissae = chart.chart.lines.iter().flat_map(|l| &l.points).map(|p| p.0);
+        let (from, to) = abscissae.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        if from < to { self.between(from, to) } else { self }
     }
 
     /// The same between two abscissae.

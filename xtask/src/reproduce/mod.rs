@@ -31,7 +31,7 @@ use store::Store;
 /// How fine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Level {
-    /// Half the positions, coarser contact cells, fewer loads: minutes.
+    /// Coarser along the face and in the contact, fewer loads.
     Quick,
     /// The case files as they stand.
     Full,

@@ -68,7 +68,7 @@ fn head(page: &mut String, all: &[Done], printed: &Printed, level: Level) -> any
         "<h1>Figures of the dissertation, computed again</h1>\n<p class=\"meta\">gearwright {}, level {}; {:.0} s of computing</p>\n\
          <p>Every figure and table that holds computed results, from the case files of the repository. Numbers printed in the dissertation stand beside \
          the computed ones; nothing is fitted to them. A number passes if it is as near as the tolerance of its kind, which was set beforehand from \
-         what the dissertation leaves open (below the table).</p>\n\
+         what the dissertation leaves open (below the table), and half a unit of its last printed digit.</p>\n\
          <p><span class=\"count pass\">{pass} pass</span><span class=\"count differs\">{differs} differ</span>\
          <span class=\"count none\">{none} not comparable</span></p>\n<nav>",
         env!("CARGO_PKG_VERSION"),
@@ -129,7 +129,7 @@ fn row(page: &mut String, one: &Compared, linked: bool) -> anyhow::Result<()> {
          <td class=\"{class}\">{}</td></tr>\n",
         escaped(&number.key),
         escaped(&number.unit),
-        number.value,
+        number.printed,
         one.shown(),
         one.difference(),
         escaped(&verdict)
@@ -214,7 +214,8 @@ fn others(page: &mut String, printed: &Printed) -> anyhow::Result<()> {
          <table><thead><tr><th>what</th><th>sections</th><th>numbers</th></tr></thead><tbody>\n",
     );
     for other in &printed.other {
-        let sections = if other.sections.iter().any(String::is_empty) { "all".into() } else { other.sections.join(", ") };
+        let sections =
+            if other.sections.iter().any(String::is_empty) { "all".into() } else { other.sections.join(", ") };
         let (reason, numbers) = (escaped(&other.reason), escaped(&other.numbers.join("; ")));
         write!(page, "<tr><td>{reason}</td><td>{sections}</td><td>{numbers}</td></tr>\n")?;
     }

@@ -43,7 +43,11 @@ pub struct Number {
     pub figure: String,
     /// Key among that function's values.
     pub key: String,
-    /// As printed.
+    /// Value with the digits printed.
+    #[serde(rename = "value")]
+    pub printed: String,
+    /// The same as a number.
+    #[serde(skip)]
     pub value: f64,
     /// Unit; empty for none.
     #[serde(default)]
@@ -92,12 +96,20 @@ pub struct Compared<'a> {
     pub verdict: Verdict,
 }
 
+impl Number {
+    /// Half a unit of the last printed digit.
+    fn rounding(&self) -> f64 {
+        let decimals = self.printed.split_once('.').map_or(0, |(_, d)| d.len());
+        0.5 * 0.1_f64.powi(decimals as i32)
+    }
+}
+
 impl Compared<'_> {
     /// The difference as text.
     pub fn difference(&self) -> String {
         match self.computed {
             Some(value) if self.number.value == 0.0 => format!("{value:+.3}"),
-            Some(value) => format!("{:+.1} %", 100.0 * (value / self.number.value - 1.0)),
+            Some(value) => format!("{:+.1} %", 100.0 * (value - self.number.value) / self.number.value.abs()),
             None => String::new(),
         }
     }
@@ -108,9 +120,9 @@ impl Compared<'_> {
     }
 }
 
-/// Four digits, more for large numbers.
+/// Five digits, more for large numbers.
 pub fn significant(value: f64) -> String {
-    let digits = if value == 0.0 { 2 } else { (3 - value.abs().log10().floor() as i32).clamp(0, 6) };
+    let digits = if value == 0.0 { 2 } else { (4 - value.abs().log10().floor() as i32).clamp(0, 8) };
     format!("{value:.*}", digits as usize)
 }
 
@@ -118,8 +130,11 @@ impl Printed {
     /// Reads the file.
     pub fn load(file: &Path) -> anyhow::Result<Self> {
         let text = std::fs::read_to_string(file).with_context(|| format!("{} cannot be read", file.display()))?;
-        let printed: Self = toml::from_str(&text).with_context(|| format!("{}", file.display()))?;
-        for number in &printed.result {
+        let mut printed: Self = toml::from_str(&text).with_context(|| format!("{}", file.display()))?;
+        for number in &mut printed.result {
+            let Number { figure, key, .. } = &number;
+            let value = number.printed.parse();
+            number.value = value.with_context(|| format!("printed number {key} of figure {figure} is no number"))?;
             if !printed.kind.iter().any(|k| k.name == number.kind) {
                 bail!(
                     "printed number {} of figure {} is of an unknown kind {}",
@@ -165,7 +180,7 @@ impl Printed {
             (None, None) => Verdict::NotComparable("the computation gives no such value".into()),
             (None, Some(value)) => {
                 let kind = self.kind.iter().find(|k| k.name == number.kind);
-                let allowed = kind.map_or(0.0, |k| k.relative * number.value.abs() + k.absolute);
+                let allowed = kind.map_or(0.0, |k| k.relative * number.value.abs() + k.absolute) + number.rounding();
                 if (value - number.value).abs() <= allowed { Verdict::Pass } else { Verdict::Differs }
             }
         };

@@ -405,9 +405,9 @@ pub const FIGURES: &[Figure] = &[
     ),
     computed(
         "7.5",
-        "Two motions at 1750 Hz",
+        "Two motions at one speed",
         "Lower and upper branch, response and spectrum.",
-        &["lumped-1750hz-lower.toml", "lumped-1750hz-upper.toml"],
+        &["lumped-1750hz-lower.toml", "lumped-1850hz-upper.toml"],
         lumped::two_branches,
     ),
     computed(

@@ -50,7 +50,7 @@ pub fn write(all: &[Done], printed: &Printed) -> anyhow::Result<()> {
             };
             let (place, key, unit) = (&number.place, &number.key, &number.unit);
             let (shown, difference) = (one.shown(), one.difference());
-            writeln!(text, "| {place} | {key} | {unit} | {} | {shown} | {difference} | {verdict} |", number.value)?;
+            writeln!(text, "| {place} | {key} | {unit} | {} | {shown} | {difference} | {verdict} |", number.printed)?;
         }
     }
     text.push_str("\n## Not compared\n\n| figure | numbers | why |\n|---|---|---|\n");

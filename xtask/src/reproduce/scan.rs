@@ -122,7 +122,7 @@ fn unused<'a>(printed: &'a Printed, mentions: &[Mention]) -> Vec<(String, &'a [S
         unit && (m.value - n.value).abs() <= 1e-9 * n.value.abs().max(1.0) && covers(&n.sections, &m.section)
     };
     let absent = printed.result.iter().filter(|n| !mentions.iter().any(|m| there(n, m)));
-    absent.map(|n| (format!("{} {} ({})", n.value, n.unit, n.key), n.sections.as_slice())).collect()
+    absent.map(|n| (format!("{} {} ({})", n.printed, n.unit, n.key), n.sections.as_slice())).collect()
 }
 
 /// Numbers from chapter 2 to the references.

@@ -4,11 +4,9 @@
 
 use std::fmt::Write as _;
 
-use kuva::backend::png::PngBackend;
-use kuva::backend::svg::SvgBackend;
 use kuva::render::render::{PathData, Primitive, Scene, TextAnchor};
 
-use super::{PNG_SCALE, Pattern};
+use super::Pattern;
 
 /// Text size (px).
 const TEXT: u32 = 13;
@@ -115,10 +113,7 @@ impl Drawing {
     /// # Errors
     /// What the file system or the renderer says.
     pub fn save(&self, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
-        let scene = self.scene();
-        super::write(&folder(&format!("{name}.svg")), SvgBackend.render_scene(&scene).as_bytes())?;
-        let png = PngBackend::new().with_scale(PNG_SCALE).render_scene(&scene)?;
-        super::write(&folder(&format!("{name}.png")), &png)
+        super::save(self.scene(), folder, name)
     }
 
     /// Extent of the strokes and the border: left, right, bottom, top.
@@ -145,7 +140,7 @@ impl Drawing {
         let scale = (720.0 / wide).min(560.0 / high);
         let named: Vec<&Stroke> = self.strokes.iter().filter(|s| !s.name.is_empty()).collect();
         let head = if self.title.is_empty() { MARGIN } else { MARGIN + 24.0 };
-        let width = (wide * scale + 2.0 * MARGIN).max(360.0);
+        let width = (wide * scale + 2.0 * MARGIN).max(420.0);
         let bar = if self.scale_bar.is_some() { 26.0 } else { 0.0 };
         let key = 20.0 * named.len() as f64;
         let body = head + high * scale + 14.0;
@@ -190,19 +185,13 @@ fn path(stroke: &Stroke, lines: impl Iterator<Item = Vec<(f64, f64)>>) -> Primit
             d.push('Z');
         }
     }
-    let dashes = match stroke.pattern {
-        Pattern::Dashed => Some("7 4"),
-        Pattern::Dotted => Some("2 3"),
-        Pattern::DashDotted => Some("8 3 2 3"),
-        _ => None,
-    };
     Primitive::Path(Box::new(PathData {
         d,
         fill: stroke.fill.map(Into::into),
         stroke: stroke.colour.into(),
         stroke_width: stroke.width,
         opacity: None,
-        stroke_dasharray: dashes.map(Into::into),
+        stroke_dasharray: stroke.pattern.dashes().map(Into::into),
     }))
 }
 

@@ -1,5 +1,6 @@
 //! Figures: line charts, flank maps and drawings as SVG and PNG. The only place that names the plotting library.
 
+mod dashes;
 pub mod drawing;
 pub mod lumped;
 pub mod recording;
@@ -7,10 +8,12 @@ pub mod statics;
 
 use std::path::Path;
 
+use kuva::backend::png::PngBackend;
+use kuva::backend::svg::SvgBackend;
 use kuva::prelude::{
-    ColorMap, Heatmap, Layout, LegendPosition, LinePlot, MarkerShape, Plot, ReferenceLine, ScatterPlot, render_to_png,
-    render_to_svg,
+    ColorMap, Heatmap, Layout, LegendPosition, LinePlot, LineStyle, MarkerShape, Plot, ReferenceLine, ScatterPlot,
 };
+use kuva::render::render::{Scene, render_multiple};
 
 /// Line patterns, told apart without colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -30,6 +33,18 @@ pub enum Pattern {
     Squares,
     /// Crosses at the points, no line.
     Crosses,
+}
+
+impl Pattern {
+    /// Lengths of dashes and gaps (px); `None` for an unbroken line and for markers.
+    fn dashes(self) -> Option<&'static str> {
+        match self {
+            Self::Dashed => Some("8 5"),
+            Self::Dotted => Some("1.6 4"),
+            Self::DashDotted => Some("9 4 1.6 4"),
+            _ => None,
+        }
+    }
 }
 
 /// One line of a chart.
@@ -130,15 +145,13 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
     std::fs::write(path, bytes).map_err(|e| format!("{}: {e}", path.display()))
 }
 
-fn save(
-    make: impl Fn() -> (Vec<Plot>, Layout),
-    folder: &dyn Fn(&str) -> std::path::PathBuf,
-    name: &str,
-) -> Result<(), String> {
-    let (plots, layout) = make();
-    write(&folder(&format!("{name}.svg")), render_to_svg(plots, layout).as_bytes())?;
-    let (plots, layout) = make();
-    write(&folder(&format!("{name}.png")), &render_to_png(plots, layout, PNG_SCALE)?)
+/// Writes a scene as `name.svg` and `name.png`.
+fn save(mut scene: Scene, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
+    write(&folder(&format!("{name}.svg")), SvgBackend.render_scene(&scene).as_bytes())?;
+    // the raster backend begins its dashes anew at every point of a line
+    dashes::cut(&mut scene);
+    let png = PngBackend::new().with_scale(PNG_SCALE).render_scene(&scene)?;
+    write(&folder(&format!("{name}.png")), &png)
 }
 
 impl Line {
@@ -155,11 +168,9 @@ impl Line {
             return if self.name.is_empty() { plot } else { plot.with_legend(self.name.clone()) }.into();
         }
         let plot = LinePlot::new().with_data(self.points.clone()).with_color(self.colour).with_stroke_width(1.8);
-        let plot = match self.pattern {
-            Pattern::Dashed => plot.with_dashed(),
-            Pattern::Dotted => plot.with_dotted(),
-            Pattern::DashDotted => plot.with_dashdot(),
-            _ => plot,
+        let plot = match self.pattern.dashes() {
+            Some(dashes) => plot.with_line_style(LineStyle::Custom(dashes.into())),
+            None => plot,
         };
         if self.name.is_empty() { plot } else { plot.with_legend(self.name.clone()) }.into()
     }
@@ -171,7 +182,8 @@ impl Chart {
     /// # Errors
     /// What the file system or the renderer says.
     pub fn save(&self, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
-        save(|| self.draw(), folder, name)
+        let (plots, layout) = self.draw();
+        save(render_multiple(plots, layout), folder, name)
     }
 
     fn draw(&self) -> (Vec<Plot>, Layout) {
@@ -197,7 +209,8 @@ impl MarkedChart {
     /// # Errors
     /// What the file system or the renderer says.
     pub fn save(&self, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
-        save(|| self.draw(), folder, name)
+        let (plots, layout) = self.draw();
+        save(render_multiple(plots, layout), folder, name)
     }
 
     fn draw(&self) -> (Vec<Plot>, Layout) {
@@ -233,7 +246,8 @@ impl FlankMap {
     /// # Errors
     /// What the file system or the renderer says.
     pub fn save(&self, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
-        save(|| self.draw(), folder, name)
+        let (plots, layout) = self.draw();
+        save(render_multiple(plots, layout), folder, name)
     }
 
     fn draw(&self) -> (Vec<Plot>, Layout) {

@@ -118,6 +118,11 @@ pub fn amplitude_and_delay(context: &Context) -> anyhow::Result<Drawn> {
     Ok(drawn)
 }
 
+/// Damped natural frequency (Hz).
+fn damped(sine: &DampedSine) -> f64 {
+    sine.natural_frequency * (1.0 - sine.damping * sine.damping).sqrt()
+}
+
 fn measured(samples: &[f64]) -> anyhow::Result<[f64; 3]> {
     Ok([rms(samples)?, kurtosis(samples)?, m8a(samples)?])
 }
@@ -183,7 +188,7 @@ pub fn densities(_: &Context) -> anyhow::Result<Drawn> {
     let mut drawn = Drawn::default();
     // the damaged tooth engages at 0
     let sine = DampedSine { delay: 0.0, ..PRINTED };
-    let half = std::f64::consts::PI / sine.damped_frequency();
+    let half = 0.5 / damped(&sine);
     let parts = [(3_usize, ["a", "b"]), (4, ["c", "d"]), (82, ["e", "f"])];
     for (count, [time, density]) in parts {
         let duration = if count == 82 { TURN as f64 / MESH } else { count as f64 * half };
@@ -237,7 +242,7 @@ pub fn sensitivity(_: &Context) -> anyhow::Result<Drawn> {
     let by = |sine: DampedSine, n: f64| -> anyhow::Result<[f64; 3]> {
         Ok(listed(&simplified_indicators(sine.extremum(1), sine.log_decrement(), n)?))
     };
-    let cycles = |sine: &DampedSine| 2.0 * turn * sine.damped_frequency() / std::f64::consts::TAU;
+    let cycles = |sine: &DampedSine| 2.0 * turn * damped(sine);
     let own = cycles(&PRINTED);
     let mut sweeps: Vec<(&str, f64, Vec<(f64, [f64; 3])>)> = Vec::new();
     let mut rows = Vec::new();

@@ -19,12 +19,15 @@ const MM: f64 = 1e3;
 
 type Polyline = Vec<(f64, f64)>;
 
-/// Edges of the elements (mm) after a map of the nodes.
-fn edges(mesh: &PlaneMesh, place: impl Fn(usize, Point2<f64>) -> Point2<f64>) -> Vec<Polyline> {
+/// Edges of the elements (mm), cut at an inner radius (m), after a map of the nodes.
+fn edges(mesh: &PlaneMesh, beyond: f64, place: impl Fn(usize, Point2<f64>) -> Point2<f64>) -> Vec<Polyline> {
     let n = mesh.order + 1;
     let corner = |element: &[u32], k: usize| {
         let node = element[k] as usize;
-        let p = place(node, mesh.nodes[node]);
+        // what lies further in is drawn on the circle
+        let own = mesh.nodes[node];
+        let out = (beyond / own.coords.norm().max(1e-12)).max(1.0);
+        let p = place(node, Point2::from(own.coords * out));
         (p.x * MM, p.y * MM)
     };
     let outline = |element: &[u32]| -> Polyline {
@@ -32,7 +35,9 @@ fn edges(mesh: &PlaneMesh, place: impl Fn(usize, Point2<f64>) -> Point2<f64>) ->
         let along = (0..n).chain((1..n).map(|j| j * n + last)).chain((0..last).rev().map(|i| last * n + i));
         along.chain((0..last).rev().map(|j| j * n)).map(|k| corner(element, k)).collect()
     };
-    mesh.elements().map(outline).collect()
+    let is_near =
+        |element: &&[u32]| element.iter().any(|n| mesh.nodes[*n as usize].coords.norm() > beyond * (1.0 + 1e-9));
+    mesh.elements().filter(is_near).map(outline).collect()
 }
 
 /// Meshes of both gears in mesh, the crack (if any) on tooth 0 of the pinion.
@@ -46,7 +51,7 @@ fn pair_mesh(case: &SpurPairCase, title: &str) -> anyhow::Result<Drawing> {
         let mut lines = Vec::new();
         for tooth in 0..gear.teeth() {
             let turn = Rotation2::new(first + TAU * f64::from(tooth) / f64::from(gear.teeth()));
-            lines.extend(edges(&sector.mesh, |_, p| centre + turn * p.coords));
+            lines.extend(edges(&sector.mesh, 0.0, |_, p| centre + turn * p.coords));
         }
         drawing.strokes.push(Stroke::thin(lines).styled(colour, 0.35));
         let mark = if member == Member::Pinion { "C" } else { "T" };
@@ -127,7 +132,13 @@ pub fn flank<'a>(
         let style = Stroke::thin(outlines).styled(colour, 1.8).patterned(pattern).named(&severity.label);
         strokes.push(style);
     }
-    let place = |roll: f64| measure.at(roll) * MM;
+    // a wide face is drawn higher than to scale, so that its landmarks stand apart
+    let reach = (measure.at(landmarks.eap.roll_distance) - measure.at(landmarks.sap.roll_distance)) * MM;
+    let stretch = (0.9 * half / reach).max(1.0);
+    for line in strokes.iter_mut().flat_map(|s: &mut Stroke| &mut s.lines) {
+        line.iter_mut().for_each(|p| p.1 *= stretch);
+    }
+    let place = |roll: f64| measure.at(roll) * MM * stretch;
     let marks = [
         ("SAP", Some(landmarks.sap)),
         ("LPSTC", landmarks.lpstc),
@@ -137,7 +148,7 @@ pub fn flank<'a>(
     ];
     let (low, high) = (place(landmarks.sap.roll_distance), place(landmarks.eap.roll_distance));
     let frame = vec![(-half, low), (half, low), (half, high), (-half, high), (-half, low)];
-    let mut drawing = Drawing { scale_bar: Some((5.0, scale_text(measure).into())), ..Drawing::default() };
+    let mut drawing = Drawing { scale_bar: Some((5.0, scale_text(measure, stretch))), ..Drawing::default() };
     drawing.strokes.push(Stroke::thin(vec![frame]).styled(BLACK, 1.4).filled("#f3f0ea"));
     for (name, landmark) in marks {
         let Some(landmark) = landmark else { continue };
@@ -150,11 +161,13 @@ pub fn flank<'a>(
     drawing
 }
 
-fn scale_text(measure: ProfileMeasure) -> &'static str {
-    match measure {
-        ProfileMeasure::ArcLength { .. } => "5 mm; across: face, upward: arc length on the flank",
-        ProfileMeasure::RollDistance => "5 mm; across: face, upward: distance along the line of action",
-    }
+fn scale_text(measure: ProfileMeasure, stretch: f64) -> String {
+    let along = match measure {
+        ProfileMeasure::ArcLength { .. } => "arc length on the flank",
+        ProfileMeasure::RollDistance => "distance along the line of action",
+    };
+    let times = if stretch > 1.0 { format!(", {stretch:.2} times as high") } else { String::new() };
+    format!("5 mm; across: face, upward: {along}{times}")
 }
 
 /// Figure 3.5.
@@ -226,6 +239,11 @@ pub fn nonunity_model(context: &Context) -> anyhow::Result<Drawn> {
     Ok(drawn)
 }
 
+/// Radius down to which a tooth is shown (m): something of the rim with it.
+fn below_root(gear: &Gear) -> f64 {
+    gear.root_radius() - 0.8 * gear.module()
+}
+
 /// Tooth 0 of the pinion and its neighbours' sectors under load.
 fn deformed_tooth(model: &PairModel, request: &StaticsRequest) -> anyhow::Result<Drawing> {
     const EXAGGERATION: f64 = 40.0;
@@ -235,9 +253,10 @@ fn deformed_tooth(model: &PairModel, request: &StaticsRequest) -> anyhow::Result
     let deformation = model.deformation(position, 0)?;
     let body = &model.bodies()[0];
     let mesh = &body.sector(0).shape.mesh;
-    let at_rest = edges(mesh, |_, p| p);
+    let beyond = below_root(model.pairing().gear(0));
+    let at_rest = edges(mesh, beyond, |_, p| p);
     // the deformation is told with tooth 0 on the x axis, as the mesh is
-    let moved = edges(mesh, |node, p| p + deformation.at(body, 0, node, 0.0).xy() * EXAGGERATION);
+    let moved = edges(mesh, beyond, |node, p| p + deformation.at(body, 0, node, 0.0).xy() * EXAGGERATION);
     let upright = |lines: Vec<Polyline>| -> Vec<Polyline> {
         lines.into_iter().map(|line| line.into_iter().map(|(x, y)| (-y, x)).collect()).collect()
     };
@@ -245,7 +264,7 @@ fn deformed_tooth(model: &PairModel, request: &StaticsRequest) -> anyhow::Result
         Stroke::thin(upright(at_rest)).styled("#c8c8c8", 0.5).filled("#e4e4e4"),
         Stroke::thin(upright(moved)).styled("#26418f", 0.5),
     ];
-    let scale = format!("2 mm; displacements {EXAGGERATION:.0} times as large");
+    let scale = format!("2 mm; displacements times {EXAGGERATION:.0}");
     Ok(Drawing { strokes, scale_bar: Some((2.0, scale)), ..Drawing::default() })
 }
 
@@ -258,7 +277,7 @@ pub fn cracks(gear: &Gear, side: FlankSide, lengths: &[(f64, &'static str, Patte
         let crack = RootCrack::along_chord(side, *fraction);
         let sector = SectorMesh::with_crack(gear, &density, Some(&crack), "gear")?;
         if index + 1 == lengths.len() {
-            let lines = edges(&sector.mesh, |_, p| p).into_iter();
+            let lines = edges(&sector.mesh, below_root(gear), |_, p| p).into_iter();
             let lines = lines.map(|line| line.into_iter().map(|(x, y)| (-y, x)).collect()).collect();
             drawing.strokes.push(Stroke::thin(lines).styled(GREY, 0.4));
         }
@@ -373,7 +392,7 @@ fn lumped_scheme() -> Drawing {
         label(4.2, -1.35, "c_m"),
         label(0.5, 0.42, "y_p"),
         label(9.5, 0.42, "y_g"),
-        label(-0.2, -0.7, "m_p, J_p, r_p"),
+        label(0.0, -0.75, "m_p, J_p, r_p"),
         label(9.0, -0.8, "m_g, J_g, r_g"),
         label(0.0, 2.25, "T_p, θ_p"),
         label(9.0, 2.75, "T_g, θ_g"),
