@@ -4,7 +4,6 @@ use clap::{Parser, Subcommand};
 
 mod calculix;
 mod ci;
-mod dissertation;
 mod reproduce;
 mod work_precision;
 
@@ -25,12 +24,6 @@ enum Command {
     },
     /// Static transmission error against CalculiX (program `ccx`, Debian package calculix-ccx); writes docs/reports/calculix.md.
     PeerCalculix,
-    /// Printed results of the dissertation against computed ones; writes docs/reports/dissertation-CHAPTER.md.
-    Dissertation {
-        /// What to compare.
-        #[arg(value_enum)]
-        chapter: dissertation::Chapter,
-    },
     /// Figures and tables of the dissertation, computed again from the case files, beside the printed numbers, on one page.
     ReproduceThesisFigures(reproduce::Options),
     /// Error against run time; writes docs/reports/work-precision-STUDY.md and plots.
@@ -45,7 +38,6 @@ fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::Ci { full } => ci::run(full),
         Command::PeerCalculix => calculix::run(),
-        Command::Dissertation { chapter } => dissertation::run(chapter),
         Command::ReproduceThesisFigures(options) => reproduce::run(&options),
         Command::WorkPrecision { study } => work_precision::run(study),
     }

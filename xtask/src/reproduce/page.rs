@@ -19,7 +19,8 @@ h1, h2, h3, nav, table, .meta, summary, .chip { font-family: system-ui, 'Helveti
 h1 { font-size: 1.7rem; margin: 0 0 .3rem } h2 { font-size: 1.25rem; margin: 3rem 0 .4rem; border-top: 2px solid var(--ink); padding-top: .8rem }
 a { color: #0b4f9e } nav { font-size: .85rem; line-height: 1.9; margin: 1rem 0 } nav a { margin-right: .7rem; white-space: nowrap }
 table { border-collapse: collapse; font-size: .82rem; width: 100%; margin: .7rem 0 } th { text-align: left; border-bottom: 1.5px solid var(--ink) }
-th, td { padding: .22rem .55rem; vertical-align: top } td { border-bottom: 1px solid var(--line) } td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
+th, td { padding: .22rem .55rem; vertical-align: top } td { border-bottom: 1px solid var(--line) } th.n { text-align: right } td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap }
+.numbers td:first-child { width: 27% } .numbers td:nth-child(2) { width: 25% } .numbers td:last-child { width: 19% }
 .pass { color: var(--pass) } .differs { color: var(--differs); font-weight: 600 } .none { color: var(--none) }
 .panels { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 30rem), 1fr)); gap: 1rem; margin: 1rem 0 }
 figure { margin: 0; break-inside: avoid } figure img { width: 100%; height: auto; max-height: 34rem; object-fit: contain; border: 1px solid var(--line) }
@@ -81,9 +82,9 @@ fn head(page: &mut String, all: &[Done], printed: &Printed, level: Level) -> any
             Outcome::Failed(_) => " class=\"differs\"",
             Outcome::Missing(_) => " class=\"none\"",
         };
-        write!(page, "<a{style} href=\"#f{}\">{}</a>", done.figure.id, name(done.figure.id))?;
+        write!(page, "<a{style} href=\"#f{}\">{}</a>\n", done.figure.id, name(done.figure.id))?;
     }
-    page.push_str("</nav>\n<table><thead><tr><th>where</th><th>what</th><th>unit</th><th>printed</th><th>computed</th><th>difference</th><th>verdict</th></tr></thead><tbody>\n");
+    page.push_str("</nav>\n<table class=\"numbers\"><thead><tr><th>where</th><th>what</th><th>unit</th><th class=\"n\">printed</th><th class=\"n\">computed</th><th class=\"n\">difference</th><th>verdict</th></tr></thead><tbody>\n");
     for one in &compared {
         row(page, one, true)?;
     }
@@ -154,7 +155,7 @@ fn figure(page: &mut String, folder: &Path, done: &Done, printed: &Printed) -> a
     }
     let compared = printed.compare(done);
     if !compared.is_empty() && drawn(done).is_some() {
-        page.push_str("<table><thead><tr><th>printed where</th><th>what</th><th>unit</th><th>printed</th><th>computed</th><th>difference</th><th>verdict</th></tr></thead><tbody>\n");
+        page.push_str("<table class=\"numbers\"><thead><tr><th>printed where</th><th>what</th><th>unit</th><th class=\"n\">printed</th><th class=\"n\">computed</th><th class=\"n\">difference</th><th>verdict</th></tr></thead><tbody>\n");
         for one in &compared {
             row(page, one, false)?;
         }

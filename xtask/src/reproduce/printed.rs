@@ -105,12 +105,15 @@ impl Number {
 }
 
 impl Compared<'_> {
-    /// The difference as text.
+    /// The difference as text: in points for percentages, in cycles for places in the mesh cycle, else relative.
     pub fn difference(&self) -> String {
-        match self.computed {
-            Some(value) if self.number.value == 0.0 => format!("{value:+.3}"),
-            Some(value) => format!("{:+.1} %", 100.0 * (value - self.number.value) / self.number.value.abs()),
-            None => String::new(),
+        let Some(value) = self.computed else { return String::new() };
+        let Number { value: printed, unit, kind, .. } = self.number;
+        let apart = value - printed;
+        match (unit.as_str(), kind.as_str()) {
+            ("%", _) => format!("{apart:+.2} points"),
+            (_, "cycle") => format!("{apart:+.3}"),
+            _ => format!("{:+.1} %", 100.0 * apart / printed.abs()),
         }
     }
 
