@@ -10,6 +10,7 @@ use gearwright::output::lumped_summary::Times;
 use gearwright::run::lumped_pair::analyses::{self, Findings};
 use gearwright::run::lumped_pair::states::{self, State};
 
+use super::dynamics::Dynamics;
 use super::statics::Statics;
 use super::store::Store;
 use super::{Level, root};
@@ -95,6 +96,13 @@ impl<'a> Context<'a> {
     pub fn statics(&self, file: &str) -> anyhow::Result<Statics> {
         let name = file.trim_end_matches(".toml");
         self.store.study(name, &self.key(&[file])?, || Statics::compute(&self.spur_pair(file)?))
+    }
+
+    /// Dynamics of the finite-element/contact model of a spur-pair case, with the severities picked.
+    pub fn dynamics(&self, file: &str, mesh_frequency: f64, picked: &[usize]) -> anyhow::Result<Dynamics> {
+        let name = format!("{}-{mesh_frequency}hz", file.trim_end_matches(".toml"));
+        let key = format!("{} {picked:?}", self.key(&[file])?);
+        self.store.study(&name, &key, || Dynamics::compute(&self.spur_pair(file)?, mesh_frequency, picked))
     }
 
     /// A lumped-parameter case with all its analyses; run once for all figures that ask for it.

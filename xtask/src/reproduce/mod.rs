@@ -7,6 +7,7 @@
 
 mod context;
 mod drawn;
+mod dynamics;
 mod figures;
 mod page;
 mod printed;

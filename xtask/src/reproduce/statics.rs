@@ -79,7 +79,7 @@ impl Statics {
 }
 
 /// Damaged part (%): pit area over the tooth's active surface, or crack length over the chord.
-fn percent(case: &SpurPairCase, damage: &[Vec<gear_geom::ToothDamage>; 2]) -> f64 {
+pub fn percent(case: &SpurPairCase, damage: &[Vec<gear_geom::ToothDamage>; 2]) -> f64 {
     let mut sum = 0.0;
     for (index, member) in [gear_geom::Member::Pinion, gear_geom::Member::Wheel].into_iter().enumerate() {
         for one in &damage[index] {

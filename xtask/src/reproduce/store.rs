@@ -15,7 +15,7 @@ use super::drawn::{Drawn, Saved};
 use super::{Level, root};
 
 /// Sources that a study depends on.
-const COMPUTING: [&str; 8] = [
+const COMPUTING: [&str; 9] = [
     "crates/gear-geom/src",
     "crates/fecm/src",
     "crates/lpm/src",
@@ -23,6 +23,7 @@ const COMPUTING: [&str; 8] = [
     "crates/gearwright/src/case",
     "crates/gearwright/src/run",
     "xtask/src/reproduce/statics.rs",
+    "xtask/src/reproduce/dynamics.rs",
     "Cargo.lock",
 ];
 /// Sources that a figure depends on besides.

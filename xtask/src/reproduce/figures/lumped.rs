@@ -40,8 +40,15 @@ pub fn at_900(context: &Context) -> anyhow::Result<Drawn> {
         ("b", "A pit of 12.7 x 2.76 mm on a pinion tooth.", of(&pits, "pit 12.7 x 2.76 mm")?, (13.0, 20.0)),
         ("c", "A root crack of 20 % on a pinion tooth.", of(&cracks, "crack 20 %")?, (13.0, 20.0)),
     ];
-    for (letter, about, response, (from, to)) in panels {
-        let lines = vec![line("lumped parameters", BLACK, Pattern::Solid, over_time(response, from, to))];
+    let cracked = context.dynamics("cracked-pinion-plane.toml", 900.0, &[0])?;
+    let pitted = context.dynamics("pitted-pitch.toml", 900.0, &[1])?;
+    let full = [Some(&cracked.healthy), pitted.damaged.first(), cracked.damaged.first()];
+    for ((letter, about, response, (from, to)), full) in panels.into_iter().zip(full) {
+        let mut lines = vec![line("lumped parameters", BLACK, Pattern::Solid, over_time(response, from, to))];
+        if let Some(motion) = full {
+            let points = motion.over_cycles().into_iter().filter(|p| (from..=to).contains(&p.0)).step_by(2).collect();
+            lines.push(line("finite elements", BLUE, Pattern::Circles, points));
+        }
         drawn.panels.push(Panel::chart(letter, about, (CYCLE, DTE), lines));
     }
     drawn.note(
@@ -235,14 +242,14 @@ pub fn two_branches(context: &Context) -> anyhow::Result<Drawn> {
 }
 
 /// The damage-induced response of a state at a speed.
-pub fn difference<'a>(run: &'a Lumped, state: &str, frequency: f64) -> anyhow::Result<&'a DamageResult> {
+fn difference<'a>(run: &'a Lumped, state: &str, frequency: f64) -> anyhow::Result<&'a DamageResult> {
     let mut all = run.findings.damage.iter();
     let found = all.find(|d| d.state == state && (d.mesh_frequency - frequency).abs() < 1e-6);
     found.ok_or_else(|| anyhow::anyhow!("there is no damage-induced response of {state} at {frequency} Hz"))
 }
 
 /// A difference signal over the mesh cycle (um).
-pub fn difference_points(result: &DamageResult) -> Vec<(f64, f64)> {
+fn difference_points(result: &DamageResult) -> Vec<(f64, f64)> {
     let cycles = &result.response.damaged.response.mesh_cycle;
     cycles.iter().zip(&result.response.difference).map(|(t, x)| (*t, x * 1e6)).collect()
 }
