@@ -190,3 +190,40 @@ impl Printed {
         Compared { number, computed, verdict }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::super::drawn::Saved;
+    use super::super::registry::FIGURES;
+    use super::super::root;
+    use super::*;
+
+    #[test]
+    fn the_data_file_fits_the_figures() {
+        let printed = Printed::load(&root().join("docs/dissertation/printed.toml")).expect("it can be read");
+        printed.check_against(FIGURES).expect("it fits");
+    }
+
+    #[test]
+    fn verdicts_follow_tolerance_and_rounding() {
+        let text = "other = []\n[[kind]]\nname = \"k\"\nrelative = 0.01\nwhy = \"\"\n[[result]]\nfigure = \"2.2\"\nkey = \"a\"\nvalue = \"2.0\"\n\
+                    kind = \"k\"\nplace = \"\"\nsections = []\n";
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("printed.toml");
+        std::fs::write(&file, text).expect("it can be written");
+        let printed = Printed::load(&file).expect("it can be read");
+        let verdict = |value: Option<f64>| {
+            let values: BTreeMap<String, f64> = value.map(|v| ("a".to_owned(), v)).into_iter().collect();
+            let saved = Saved { panels: vec![], tables: vec![], values, notes: vec![], seconds: 0.0 };
+            let figure = FIGURES.iter().find(|f| f.id == "2.2").expect("there is one");
+            printed.compare(&Done { figure, outcome: Outcome::Drawn(saved) }).remove(0).verdict
+        };
+        // 0.02 by the kind and 0.05 by the last digit
+        assert_eq!(verdict(Some(2.069)), Verdict::Pass);
+        assert_eq!(verdict(Some(2.071)), Verdict::Differs);
+        assert!(matches!(verdict(Some(f64::NAN)), Verdict::NotComparable(_)));
+        assert!(matches!(verdict(None), Verdict::NotComparable(_)));
+    }
+}

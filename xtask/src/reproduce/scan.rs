@@ -271,3 +271,31 @@ fn listed_before(line: &str, at: usize) -> Option<(f64, usize)> {
     }
     value(line, start, end)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "CHAPTER TWO\n2.1 A title\nThe width is $9.3 \\mu\\text{m}$, of 20%, 50, and 80 percent; see Figure 2.5 N.\n\
+                        At mesh cycle 1.62 it falls to -25.2 μm.\nREFERENCES\n5 mm\n";
+
+    #[test]
+    fn numbers_with_units_are_found_in_their_sections() {
+        let found: Vec<(f64, &str, String)> =
+            mentions(TEXT).into_iter().filter(|m| !m.unit.is_empty()).map(|m| (m.value, m.unit, m.section)).collect();
+        let own = |value: f64, unit: &'static str| (value, unit, "2.1".to_owned());
+        let expected =
+            [own(9.3, "um"), own(20.0, "%"), own(80.0, "%"), own(50.0, "%"), own(1.62, "cycle"), own(-25.2, "um")];
+        for one in &expected {
+            assert!(found.contains(one), "{one:?} is not in {found:?}");
+        }
+        assert!(found.iter().all(|f| f.2 == "2.1"), "{found:?}");
+    }
+
+    #[test]
+    fn sections_cover_those_below_them_only() {
+        let of = |s: &str| vec![s.to_owned()];
+        assert!(covers(&of("2.1"), "2.1.3") && covers(&of("2"), "2.1") && covers(&of(""), "A.1"));
+        assert!(!covers(&of("2.1"), "2.10") && !covers(&of("2.1.3"), "2.1"));
+    }
+}
