@@ -11,8 +11,8 @@ use gearwright::run::lumped_pair::analyses::{self, Findings};
 use gearwright::run::lumped_pair::states::{self, State};
 
 use super::dynamics::Dynamics;
-use super::statics::Statics;
-use super::store::Store;
+use super::statics::{self, Statics};
+use super::store::{Store, hash};
 use super::{Level, root};
 
 /// Keys of spur-pair cases that the quick level sets, with the values.
@@ -92,10 +92,18 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Static analysis of a spur-pair case and all its severities.
+    /// Static analysis of a spur-pair case and all its severities. Cases that differ in their damage only share the healthy pair.
     pub fn statics(&self, file: &str) -> anyhow::Result<Statics> {
-        let name = file.trim_end_matches(".toml");
-        self.store.study(name, &self.key(&[file])?, || Statics::compute(&self.spur_pair(file)?))
+        let case = self.spur_pair(file)?;
+        let mut inputs = case.inputs.clone();
+        inputs.title.clear();
+        inputs.damage.clear();
+        let inputs = serde_json::to_string(&inputs)?;
+        let name = format!("healthy-{:016x}", hash(inputs.as_bytes()));
+        let healthy = self.store.study(&name, &inputs, || statics::healthy(&case))?;
+        let name = format!("damaged-{}", file.trim_end_matches(".toml"));
+        let damaged = self.store.study(&name, &self.key(&[file])?, || statics::damaged(&case))?;
+        Ok(Statics { healthy, damaged })
     }
 
     /// Dynamics of the finite-element/contact model of a spur-pair case, with the severities picked.

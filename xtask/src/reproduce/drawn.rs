@@ -80,7 +80,7 @@ impl Panel {
     }
 
     /// The same with its ordinate from zero.
-    pub fn from_zero(mut self) -> Self {
+    pub fn zero_based(mut self) -> Self {
         self.marked(|c| c.chart.from_zero = true);
         self
     }

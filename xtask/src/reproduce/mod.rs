@@ -63,6 +63,9 @@ pub struct Options {
     /// Compute again what is up to date.
     #[arg(long)]
     fresh: bool,
+    /// Write docs/reports/dissertation.md, too.
+    #[arg(long, conflicts_with = "only")]
+    report: bool,
     /// List the figures and tables.
     #[arg(long)]
     list: bool,
@@ -108,8 +111,8 @@ pub fn run(options: &Options) -> anyhow::Result<()> {
     }
     let seconds = clock.elapsed().as_secs_f64();
     let page = page::write(&options.out, &all, &printed, options.level)?;
-    if options.only.is_empty() && options.level == Level::Full {
-        report::write(&all, &printed)?;
+    if options.report {
+        report::write(&all, &printed, options.level)?;
         println!("written: docs/reports/dissertation.md");
     }
     let count = |pick: fn(&Outcome) -> bool| all.iter().filter(|d| pick(&d.outcome)).count();

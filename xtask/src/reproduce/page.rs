@@ -38,9 +38,9 @@ pre { font-size: .72rem; line-height: 1.35; overflow-x: auto; background: #f6f6f
 pub fn write(folder: &Path, all: &[Done], printed: &Printed, level: Level) -> anyhow::Result<PathBuf> {
     let mut page = String::from("<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n");
     page.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
-    write!(
+    writeln!(
         page,
-        "<title>Figures of the dissertation, computed again</title>\n<style>{STYLE}</style></head>\n<body>\n"
+        "<title>Figures of the dissertation, computed again</title>\n<style>{STYLE}</style></head>\n<body>"
     )?;
     head(&mut page, all, printed, level)?;
     for done in all {
@@ -82,7 +82,7 @@ fn head(page: &mut String, all: &[Done], printed: &Printed, level: Level) -> any
             Outcome::Failed(_) => " class=\"differs\"",
             Outcome::Missing(_) => " class=\"none\"",
         };
-        write!(page, "<a{style} href=\"#f{}\">{}</a>\n", done.figure.id, name(done.figure.id))?;
+        writeln!(page, "<a{style} href=\"#f{}\">{}</a>", done.figure.id, name(done.figure.id))?;
     }
     page.push_str("</nav>\n<table class=\"numbers\"><thead><tr><th>where</th><th>what</th><th>unit</th><th class=\"n\">printed</th><th class=\"n\">computed</th><th class=\"n\">difference</th><th>verdict</th></tr></thead><tbody>\n");
     for one in &compared {
@@ -92,9 +92,9 @@ fn head(page: &mut String, all: &[Done], printed: &Printed, level: Level) -> any
     for kind in &printed.kind {
         let absolute = if kind.absolute > 0.0 { format!(" and {} in the unit", kind.absolute) } else { String::new() };
         let percent = 100.0 * kind.relative;
-        write!(
+        writeln!(
             page,
-            "<tr><td>{}</td><td>{percent} %{absolute}</td><td>{}</td></tr>\n",
+            "<tr><td>{}</td><td>{percent} %{absolute}</td><td>{}</td></tr>",
             escaped(&kind.name),
             escaped(&kind.why)
         )?;
@@ -140,17 +140,17 @@ fn row(page: &mut String, one: &Compared, linked: bool) -> anyhow::Result<()> {
 
 fn figure(page: &mut String, folder: &Path, done: &Done, printed: &Printed) -> anyhow::Result<()> {
     let figure = done.figure;
-    write!(
+    writeln!(
         page,
-        "<section><h2 id=\"f{}\">{}. {}</h2>\n<p>{}</p>\n",
+        "<section><h2 id=\"f{}\">{}. {}</h2>\n<p>{}</p>",
         figure.id,
         name(figure.id),
         escaped(figure.title),
         escaped(figure.about)
     )?;
     match &done.outcome {
-        Outcome::Missing(reason) => write!(page, "<p class=\"missing\">Missing: {}.</p>\n", escaped(reason))?,
-        Outcome::Failed(error) => write!(page, "<p class=\"failed\">Failed: {}</p>\n", escaped(error))?,
+        Outcome::Missing(reason) => writeln!(page, "<p class=\"missing\">Missing: {}.</p>", escaped(reason))?,
+        Outcome::Failed(error) => writeln!(page, "<p class=\"failed\">Failed: {}</p>", escaped(error))?,
         Outcome::Drawn(saved) => content(page, folder, saved)?,
     }
     let compared = printed.compare(done);
@@ -165,7 +165,7 @@ fn figure(page: &mut String, folder: &Path, done: &Done, printed: &Printed) -> a
         let files: Vec<String> =
             figure.cases.iter().map(|file| format!("<a href=\"#c-{file}\">configs/{file}</a>")).collect();
         let from = if files.is_empty() { "no case file".to_owned() } else { files.join(", ") };
-        write!(page, "<p class=\"meta\">From {from}; {} s.</p>\n", significant(saved.seconds))?;
+        writeln!(page, "<p class=\"meta\">From {from}; {} s.</p>", significant(saved.seconds))?;
     }
     page.push_str("</section>\n");
     Ok(())
@@ -179,9 +179,9 @@ fn content(page: &mut String, folder: &Path, saved: &Saved) -> anyhow::Result<()
             let svg = std::fs::read(&path).with_context(|| format!("{} cannot be read", path.display()))?;
             let data = STANDARD.encode(svg);
             let about = escaped(about);
-            write!(
+            writeln!(
                 page,
-                "<figure><img alt=\"{about}\" src=\"data:image/svg+xml;base64,{data}\"><figcaption>{about}</figcaption></figure>\n"
+                "<figure><img alt=\"{about}\" src=\"data:image/svg+xml;base64,{data}\"><figcaption>{about}</figcaption></figure>"
             )?;
         }
         page.push_str("</div>\n");
@@ -218,7 +218,7 @@ fn others(page: &mut String, printed: &Printed) -> anyhow::Result<()> {
         let sections =
             if other.sections.iter().any(String::is_empty) { "all".into() } else { other.sections.join(", ") };
         let (reason, numbers) = (escaped(&other.reason), escaped(&other.numbers.join("; ")));
-        write!(page, "<tr><td>{reason}</td><td>{sections}</td><td>{numbers}</td></tr>\n")?;
+        writeln!(page, "<tr><td>{reason}</td><td>{sections}</td><td>{numbers}</td></tr>")?;
     }
     page.push_str("</tbody></table></details>\n");
     Ok(())
@@ -233,9 +233,9 @@ fn cases(page: &mut String, all: &[Done]) -> anyhow::Result<()> {
     for file in files {
         let text = std::fs::read_to_string(root().join("configs").join(file))
             .unwrap_or_else(|error| format!("cannot be read: {error}"));
-        write!(
+        writeln!(
             page,
-            "<details id=\"c-{file}\"><summary>configs/{file}</summary><pre>{}</pre></details>\n",
+            "<details id=\"c-{file}\"><summary>configs/{file}</summary><pre>{}</pre></details>",
             escaped(&text)
         )?;
     }

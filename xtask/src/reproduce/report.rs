@@ -5,13 +5,13 @@ use std::fmt::Write as _;
 use super::drawn::Done;
 use super::page::{counts, name};
 use super::printed::{Compared, Printed, Verdict};
-use super::root;
+use super::{Level, root};
 
 /// Writes the report.
 ///
 /// # Errors
 /// The file system's.
-pub fn write(all: &[Done], printed: &Printed) -> anyhow::Result<()> {
+pub fn write(all: &[Done], printed: &Printed, level: Level) -> anyhow::Result<()> {
     let compared: Vec<(&Done, Vec<Compared>)> = all.iter().map(|d| (d, printed.compare(d))).collect();
     let mut counted = [0; 3];
     for (_, own) in &compared {
@@ -19,10 +19,11 @@ pub fn write(all: &[Done], printed: &Printed) -> anyhow::Result<()> {
     }
     let [pass, differs, none] = counted;
     let mut text = format!(
-        "# Printed numbers of the dissertation\n\nWritten by `cargo xtask reproduce-thesis-figures` (level full). {pass} numbers pass, {differs} differ, {none} cannot be \
+        "# Printed numbers of the dissertation\n\nWritten by `cargo xtask reproduce-thesis-figures --level {} --report`. {pass} numbers pass, {differs} differ, {none} cannot be \
          compared. Nothing is fitted to the printed numbers; what the dissertation does not print (bores, fillets, crack paths) is chosen in the case files. \
          Heights of pits are taken as arc lengths on the flank but in section 3.2.4.2.1 and 2; see [damaged teeth](../damage.md).\n\n\
-         | kind | tolerance | why |\n|---|---|---|\n"
+         | kind | tolerance | why |\n|---|---|---|\n",
+        level.name()
     );
     for kind in &printed.kind {
         let absolute = if kind.absolute > 0.0 { format!(" and {} in the unit", kind.absolute) } else { String::new() };

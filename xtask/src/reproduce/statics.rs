@@ -52,7 +52,7 @@ pub struct Series {
 }
 
 /// All states of a case.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone)]
 pub struct Statics {
     /// Without damage.
     pub healthy: Series,
@@ -60,22 +60,23 @@ pub struct Statics {
     pub damaged: Vec<Series>,
 }
 
-impl Statics {
-    /// Solves a case and all its severities.
-    pub fn compute(case: &SpurPairCase) -> anyhow::Result<Self> {
-        let mut model = PairModel::new(&case.pair, &case.options).context("the gears cannot be modelled")?;
-        let healthy = series(case, &model, "healthy", 0.0)?;
-        let mut damaged = Vec::new();
-        for severity in &case.severities {
-            // derived from the severity before: what they have in common is computed once
-            model = model
-                .with_damage(&severity.damage)
-                .with_context(|| format!("{} cannot be modelled", severity.label))?;
-            let percent = percent(case, &severity.damage);
-            damaged.push(series(case, &model, &severity.label, percent)?);
-        }
-        Ok(Self { healthy, damaged })
+/// The healthy pair of a case.
+pub fn healthy(case: &SpurPairCase) -> anyhow::Result<Series> {
+    let model = PairModel::new(&case.pair, &case.options).context("the gears cannot be modelled")?;
+    series(case, &model, "healthy", 0.0)
+}
+
+/// All severities of a case.
+pub fn damaged(case: &SpurPairCase) -> anyhow::Result<Vec<Series>> {
+    let mut model = PairModel::new(&case.pair, &case.options).context("the gears cannot be modelled")?;
+    let mut all = Vec::new();
+    for severity in &case.severities {
+        // derived from the severity before: what they have in common is computed once
+        model =
+            model.with_damage(&severity.damage).with_context(|| format!("{} cannot be modelled", severity.label))?;
+        all.push(series(case, &model, &severity.label, percent(case, &severity.damage))?);
     }
+    Ok(all)
 }
 
 /// Damaged part (%): pit area over the tooth's active surface, or crack length over the chord.

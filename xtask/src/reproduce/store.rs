@@ -143,7 +143,8 @@ fn keep(file: &Path, value: &impl Serialize) -> anyhow::Result<()> {
     fs::rename(&beside, file).with_context(|| format!("{} cannot be written", file.display()))
 }
 
-fn hash(bytes: &[u8]) -> u64 {
+/// Hash of bytes.
+pub fn hash(bytes: &[u8]) -> u64 {
     let mut hasher = DefaultHasher::new();
     hasher.write(bytes);
     hasher.finish()

@@ -175,7 +175,7 @@ pub fn peak_to_peak(context: &Context) -> anyhow::Result<Drawn> {
     }
     let labels = ("Pit area (% of the active flank)", "Peak-to-peak transmission error (µm)");
     let about = "Peak-to-peak static transmission error over the damaged area; healthy and four sizes at each place.";
-    drawn.panels.push(Panel::chart("", about, labels, lines).from_zero());
+    drawn.panels.push(Panel::chart("", about, labels, lines).zero_based());
     drawn.note(
         "Four sizes per place, as in Figures 2.5 to 2.10; the dissertation's curves have more, which it does not list.",
     );

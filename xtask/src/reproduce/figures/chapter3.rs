@@ -42,7 +42,7 @@ pub fn force_deflection(context: &Context) -> anyhow::Result<Drawn> {
         let about = format!("Transmission error over the mesh cycle by load, {name}.");
         drawn
             .panels
-            .push(Panel::chart(letter, &about, (CYCLE, "Transmission error (µm)"), by_load(series)).from_zero());
+            .push(Panel::chart(letter, &about, (CYCLE, "Transmission error (µm)"), by_load(series)).zero_based());
     }
     const AT: f64 = 0.72;
     let curves = states.iter().map(|(series, name, colour, pattern)| {
@@ -57,7 +57,7 @@ pub fn force_deflection(context: &Context) -> anyhow::Result<Drawn> {
     let about = format!("Mesh force over transmission error at {AT} mesh cycle.");
     drawn
         .panels
-        .push(Panel::chart("d", &about, ("Transmission error (µm)", "Mesh force (kN)"), curves.collect()).from_zero());
+        .push(Panel::chart("d", &about, ("Transmission error (µm)", "Mesh force (kN)"), curves.collect()).zero_based());
     let compare = |value: fn(&Series) -> Vec<(f64, f64)>| -> Vec<Line> {
         states.iter().map(|(series, name, colour, pattern)| line(name, colour, *pattern, value(series))).collect()
     };
@@ -351,7 +351,7 @@ pub fn severity(context: &Context) -> anyhow::Result<Drawn> {
             line("", RED, Pattern::Solid, of_cracks.clone()),
             line("root cracks", RED, Pattern::Squares, of_cracks),
         ];
-        drawn.panels.push(Panel::chart(letter, about, ("Damage (%)", label), lines).from_zero());
+        drawn.panels.push(Panel::chart(letter, about, ("Damage (%)", label), lines).zero_based());
     }
     let mut table = Table {
         head: ["damage", "percent", "largest error (µm)", "mesh cycles affected"].map(String::from).to_vec(),

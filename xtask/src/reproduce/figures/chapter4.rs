@@ -91,7 +91,7 @@ pub fn healthy(context: &Context) -> anyhow::Result<Drawn> {
     ));
     let spectrum = dynamics.spectrum(&dynamics.healthy.error, HIGHEST)?;
     let lines = vec![line("", BLACK, Pattern::Solid, spectrum)];
-    drawn.panels.push(Panel::chart("b", "Spectrum.", AMPLITUDE, lines).from_zero());
+    drawn.panels.push(Panel::chart("b", "Spectrum.", AMPLITUDE, lines).zero_based());
     drawn.note(MODEL);
     drawn.note(CRACKED);
     Ok(drawn)
@@ -117,9 +117,9 @@ fn responses(dynamics: &Dynamics) -> anyhow::Result<Drawn> {
         let points = l.points.iter().copied().filter(|p| (2000.0..=3500.0).contains(&p.0)).collect();
         Line { points, ..l.clone() }
     });
-    let near = Panel::chart("d", "The spectrum from 2000 to 3500 Hz.", AMPLITUDE, near.collect()).from_zero();
+    let near = Panel::chart("d", "The spectrum from 2000 to 3500 Hz.", AMPLITUDE, near.collect()).zero_based();
     drawn.panels.push(Panel::chart("a", "One rotation of the pinion.", ("Mesh cycle", DTE), time(0.0, 27.0)));
-    drawn.panels.push(Panel::chart("b", "Spectrum.", AMPLITUDE, spectra).from_zero());
+    drawn.panels.push(Panel::chart("b", "Spectrum.", AMPLITUDE, spectra).zero_based());
     drawn.panels.push(Panel::chart("c", "After the damaged tooth engages.", ("Mesh cycle", DTE), time(13.0, 20.0)));
     drawn.panels.push(near);
     drawn.note(MODEL);
@@ -205,7 +205,7 @@ pub fn differences(context: &Context) -> anyhow::Result<Drawn> {
         }
         let labels = ("Mesh cycle", "Damaged minus healthy (µm)");
         drawn.panels.push(Panel::chart(time, &format!("{what}: difference signal."), labels, signals));
-        drawn.panels.push(Panel::chart(frequency, &format!("{what}: its spectrum."), AMPLITUDE, spectra).from_zero());
+        drawn.panels.push(Panel::chart(frequency, &format!("{what}: its spectrum."), AMPLITUDE, spectra).zero_based());
     }
     [MODEL, CRACKED, PITTED].into_iter().for_each(|note| drawn.note(note));
     Ok(drawn)
@@ -265,7 +265,7 @@ pub fn fitted_signals(context: &Context) -> anyhow::Result<Drawn> {
         drawn.panels.push(Panel::chart(time, &format!("Crack of {percent} %."), labels, lines.collect()));
         let lines = pair(dynamics.spectrum(&signal.samples, HIGHEST)?, dynamics.spectrum(&values, HIGHEST)?);
         let labels = ("Frequency (Hz)", "Amplitude (µm)");
-        drawn.panels.push(Panel::chart(frequency, &format!("Its spectrum, {percent} %."), labels, lines).from_zero());
+        drawn.panels.push(Panel::chart(frequency, &format!("Its spectrum, {percent} %."), labels, lines).zero_based());
         drawn.value(format!("{percent} %, amplitude"), model.model.amplitude);
         drawn.value(format!("{percent} %, delay"), model.model.delay);
         let peak = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -291,7 +291,7 @@ pub fn amplitude_and_delay(context: &Context) -> anyhow::Result<Drawn> {
     let panels = [("a", "Amplitude.", "Amplitude A (µm)", amplitude), ("b", "Delay.", "Delay (ms)", delay)];
     for (letter, about, label, points) in panels {
         let lines = vec![line("", BLUE, Pattern::Solid, points.clone()), line("", BLUE, Pattern::Circles, points)];
-        drawn.panels.push(Panel::chart(letter, about, ("Crack length (%)", label), lines).from_zero());
+        drawn.panels.push(Panel::chart(letter, about, ("Crack length (%)", label), lines).zero_based());
     }
     drawn.note(MODEL);
     drawn.note(CRACKED);
@@ -337,7 +337,7 @@ pub fn indicators(context: &Context) -> anyhow::Result<Drawn> {
             lines.push(line("", colour, pattern, points.clone()));
             lines.push(line(name, colour, marker, points));
         }
-        drawn.panels.push(Panel::chart(letter, label, ("Crack length (%)", label), lines).from_zero());
+        drawn.panels.push(Panel::chart(letter, label, ("Crack length (%)", label), lines).zero_based());
     }
     for percent in [20.0, 80.0] {
         if let Some((_, [exact, model, _])) = rows.iter().find(|r| (r.0 - percent).abs() < 1e-9) {
@@ -389,8 +389,8 @@ pub fn densities(_: &Context) -> anyhow::Result<Drawn> {
             line("closed form (4.11), (4.12)", RED, Pattern::Dashed, exact),
         ];
         let labels = ("Signal (µm)", "Probability density (1/µm)");
-        let mut panel =
-            Panel::chart(density, &format!("Its probability density, {count} half cycles."), labels, lines).from_zero();
+        let mut panel = Panel::chart(density, &format!("Its probability density, {count} half cycles."), labels, lines)
+            .zero_based();
         // the peaks at the extrema are singular: cut for the eye
         if let crate::reproduce::drawn::Picture::Chart(chart) = &mut panel.picture {
             let high = if count == 82 { 4.0 } else { 1.2 };
@@ -415,6 +415,9 @@ pub fn densities(_: &Context) -> anyhow::Result<Drawn> {
     Ok(drawn)
 }
 
+/// RMS, FM4 and M8A over a property.
+type Swept = Vec<(f64, [f64; 3])>;
+
 /// Figure 4.10.
 pub fn sensitivity(_: &Context) -> anyhow::Result<Drawn> {
     let mut drawn = Drawn::default();
@@ -425,7 +428,7 @@ pub fn sensitivity(_: &Context) -> anyhow::Result<Drawn> {
     };
     let cycles = |sine: &DampedSine| 2.0 * turn * damped(sine);
     let own = cycles(&PRINTED);
-    let mut sweeps: Vec<(&str, f64, Vec<(f64, [f64; 3])>)> = Vec::new();
+    let mut sweeps: Vec<(&str, f64, Swept)> = Vec::new();
     let mut rows = Vec::new();
     for damping in steps(0.01, 0.2) {
         let sine = DampedSine { damping, ..PRINTED };
@@ -450,7 +453,7 @@ pub fn sensitivity(_: &Context) -> anyhow::Result<Drawn> {
             let mark = Mark { at: here, upright: true, label: String::new(), colour: RED, dotted: false };
             let lines = vec![line("", BLACK, Pattern::Solid, points)];
             let about = format!("{name} over {}.", label.to_lowercase());
-            drawn.panels.push(Panel::chart(letter, &about, (label, name), lines).from_zero().mark(mark));
+            drawn.panels.push(Panel::chart(letter, &about, (label, name), lines).zero_based().mark(mark));
         }
     }
     // three routes to the indicators of the printed model

@@ -131,7 +131,7 @@ pub fn healthy_at_1800(context: &Context) -> anyhow::Result<Drawn> {
     let lines = vec![line("", BLACK, Pattern::Solid, over_time(healthy, 0.0, 3.0))];
     drawn.panels.push(Panel::chart("a", "Three mesh cycles at 1800 Hz.", (CYCLE, DTE), lines).between(0.0, 3.0));
     let lines = vec![line("", BLACK, Pattern::Solid, amplitudes(&healthy.spectrum))];
-    drawn.panels.push(Panel::chart("b", "Spectrum.", ("Frequency (Hz)", "Amplitude (µm)"), lines).from_zero());
+    drawn.panels.push(Panel::chart("b", "Spectrum.", ("Frequency (Hz)", "Amplitude (µm)"), lines).zero_based());
     drawn.note(CURVES);
     Ok(drawn)
 }
@@ -155,7 +155,7 @@ pub fn cracks_at_1800(context: &Context) -> anyhow::Result<Drawn> {
         .panels
         .push(Panel::chart("a", "One rotation of the pinion at 1800 Hz.", (CYCLE, DTE), lines).between(0.0, 27.0));
     let lines = compared(&run, |r| amplitudes(&r.spectrum))?;
-    drawn.panels.push(Panel::chart("b", "Spectrum.", ("Frequency (Hz)", "Amplitude (µm)"), lines).from_zero());
+    drawn.panels.push(Panel::chart("b", "Spectrum.", ("Frequency (Hz)", "Amplitude (µm)"), lines).zero_based());
     let case = context.spur_pair("cracked-pinion-plane.toml")?;
     let side = case.pair.working_side(gear_geom::Member::Pinion);
     let lengths = [(0.2, BLUE, Pattern::Solid), (0.5, RED, Pattern::Solid)];
@@ -193,8 +193,8 @@ pub fn resonance(context: &Context) -> anyhow::Result<Drawn> {
     let labels = ("Mesh frequency (Hz)", "Peak-to-peak DTE (µm)");
     drawn
         .panels
-        .push(Panel::chart("a", "Healthy pair, speed up and down.", labels, curves(&CHAPTER7[..1])).from_zero());
-    drawn.panels.push(Panel::chart("b", "With root cracks on a pinion tooth.", labels, curves(&CHAPTER7)).from_zero());
+        .push(Panel::chart("a", "Healthy pair, speed up and down.", labels, curves(&CHAPTER7[..1])).zero_based());
+    drawn.panels.push(Panel::chart("b", "With root cracks on a pinion tooth.", labels, curves(&CHAPTER7)).zero_based());
     let healthy: Vec<&SweepResult> = run.findings.sweeps.iter().filter(|s| s.state == "healthy").collect();
     for sweep in healthy {
         drawn.value(if sweep.up { "jump up" } else { "jump down" }, jump(sweep));
@@ -225,7 +225,7 @@ pub fn two_branches(context: &Context) -> anyhow::Result<Drawn> {
         drawn.panels.push(Panel::chart(letters[0], &about, (CYCLE, DTE), lines).between(13.0, 23.0));
         let lines = compared(&run, |r| amplitudes(&r.spectrum))?;
         let about = format!("Its spectrum, {} branch.", side.to_lowercase());
-        drawn.panels.push(Panel::chart(letters[1], &about, ("Frequency (Hz)", "Amplitude (µm)"), lines).from_zero());
+        drawn.panels.push(Panel::chart(letters[1], &about, ("Frequency (Hz)", "Amplitude (µm)"), lines).zero_based());
         let apart = healthy.response.separated_fraction();
         let largest = healthy.response.maximum().value * 1e6;
         let apart = 100.0 * apart;
@@ -267,7 +267,7 @@ pub fn damage_response(context: &Context) -> anyhow::Result<Drawn> {
     let spectrum = amplitudes(&result.response.spectrum);
     drawn.value("frequency of the largest line", top(&spectrum).0);
     let lines = vec![line("", BLACK, Pattern::Solid, spectrum)];
-    drawn.panels.push(Panel::chart("b", "Spectrum.", ("Frequency (Hz)", "Amplitude (µm)"), lines).from_zero());
+    drawn.panels.push(Panel::chart("b", "Spectrum.", ("Frequency (Hz)", "Amplitude (µm)"), lines).zero_based());
     drawn.note(CURVES);
     Ok(drawn)
 }
@@ -293,7 +293,7 @@ pub fn damage_speeds(context: &Context) -> anyhow::Result<Drawn> {
         let about = format!("Largest line of the damage-induced spectrum over speed, {state}.");
         let lines = vec![line("response", BLACK, Pattern::Solid, points), line("static", BLUE, Pattern::Dashed, ends)];
         let labels = ("Mesh frequency (Hz)", "Largest amplitude (µm)");
-        drawn.panels.push(Panel::chart(letter, &about, labels, lines).from_zero());
+        drawn.panels.push(Panel::chart(letter, &about, labels, lines).zero_based());
         drawn.value(format!("{state}, static amplitude"), quiet);
     }
     drawn.note(CURVES);
