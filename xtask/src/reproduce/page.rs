@@ -124,10 +124,10 @@ fn row(page: &mut String, one: &Compared, linked: bool) -> anyhow::Result<()> {
     };
     let place = escaped(&number.place);
     let place = if linked { format!("<a href=\"#f{}\">{place}</a>", number.figure) } else { place };
-    write!(
+    writeln!(
         page,
         "<tr><td>{place}</td><td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>\
-         <td class=\"{class}\">{}</td></tr>\n",
+         <td class=\"{class}\">{}</td></tr>",
         escaped(&number.key),
         escaped(&number.unit),
         number.printed,
