@@ -5,6 +5,7 @@ use clap::{Parser, Subcommand};
 mod calculix;
 mod ci;
 mod dissertation;
+mod reproduce;
 mod work_precision;
 
 #[derive(Parser)]
@@ -30,6 +31,8 @@ enum Command {
         #[arg(value_enum)]
         chapter: dissertation::Chapter,
     },
+    /// Figures and tables of the dissertation, computed again from the case files, beside the printed numbers, on one page.
+    ReproduceThesisFigures(reproduce::Options),
     /// Error against run time; writes docs/reports/work-precision-STUDY.md and plots.
     WorkPrecision {
         /// What to study.
@@ -43,6 +46,7 @@ fn main() -> anyhow::Result<()> {
         Command::Ci { full } => ci::run(full),
         Command::PeerCalculix => calculix::run(),
         Command::Dissertation { chapter } => dissertation::run(chapter),
+        Command::ReproduceThesisFigures(options) => reproduce::run(&options),
         Command::WorkPrecision { study } => work_precision::run(study),
     }
 }

@@ -1,5 +1,7 @@
-//! Figures: line charts and flank maps as SVG and PNG. The only place that names the plotting library.
+//! Figures: line charts, flank maps and drawings as SVG and PNG. The only place that names the plotting library.
 
+mod dashes;
+pub mod drawing;
 pub mod dynamics;
 pub mod lumped;
 pub mod recording;
@@ -7,10 +9,13 @@ pub mod statics;
 
 use std::path::Path;
 
+use kuva::backend::png::PngBackend;
+use kuva::backend::svg::SvgBackend;
 use kuva::prelude::{
-    ColorMap, Heatmap, Layout, LegendPosition, LinePlot, Plot, PolarMode, PolarPlot, ReferenceLine, ScatterPlot,
-    ShadedRegion, render_to_png, render_to_svg,
+    ColorMap, Heatmap, Layout, LegendPosition, LinePlot, LineStyle, MarkerShape, Plot, PolarMode, PolarPlot,
+    ReferenceLine, ScatterPlot, ShadedRegion,
 };
+use kuva::render::render::{Scene, render_multiple};
 
 /// Line patterns, told apart without colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -24,6 +29,24 @@ pub enum Pattern {
     Dotted,
     /// Dash-dotted.
     DashDotted,
+    /// Circles at the points, no line.
+    Circles,
+    /// Squares at the points, no line.
+    Squares,
+    /// Crosses at the points, no line.
+    Crosses,
+}
+
+impl Pattern {
+    /// Lengths of dashes and gaps (px); `None` for an unbroken line and for markers.
+    fn dashes(self) -> Option<&'static str> {
+        match self {
+            Self::Dashed => Some("8 5"),
+            Self::Dotted => Some("1.6 4"),
+            Self::DashDotted => Some("9 4 1.6 4"),
+            _ => None,
+        }
+    }
 }
 
 /// One line of a chart.
@@ -135,16 +158,39 @@ fn journal(layout: Layout) -> Layout {
         .with_show_grid(false)
 }
 
-fn save(
-    make: impl Fn() -> (Vec<Plot>, Layout),
-    folder: &dyn Fn(&str) -> std::path::PathBuf,
-    name: &str,
-) -> Result<(), String> {
-    let write = |path: &Path, bytes: &[u8]| std::fs::write(path, bytes).map_err(|e| format!("{}: {e}", path.display()));
-    let (plots, layout) = make();
-    write(&folder(&format!("{name}.svg")), render_to_svg(plots, layout).as_bytes())?;
-    let (plots, layout) = make();
-    write(&folder(&format!("{name}.png")), &render_to_png(plots, layout, PNG_SCALE)?)
+fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
+    std::fs::write(path, bytes).map_err(|e| format!("{}: {e}", path.display()))
+}
+
+/// Writes a scene as `name.svg` and `name.png`.
+fn save(mut scene: Scene, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
+    write(&folder(&format!("{name}.svg")), SvgBackend.render_scene(&scene).as_bytes())?;
+    // the raster backend begins its dashes anew at every point of a line
+    dashes::cut(&mut scene);
+    let png = PngBackend::new().with_scale(PNG_SCALE).render_scene(&scene)?;
+    write(&folder(&format!("{name}.png")), &png)
+}
+
+impl Line {
+    fn draw(&self) -> Plot {
+        let marker = match self.pattern {
+            Pattern::Circles => Some(MarkerShape::Circle),
+            Pattern::Squares => Some(MarkerShape::Square),
+            Pattern::Crosses => Some(MarkerShape::Cross),
+            _ => None,
+        };
+        if let Some(marker) = marker {
+            let plot = ScatterPlot::new().with_data(self.points.clone()).with_color(self.colour).with_marker(marker);
+            let plot = plot.with_size(4.0);
+            return if self.name.is_empty() { plot } else { plot.with_legend(self.name.clone()) }.into();
+        }
+        let plot = LinePlot::new().with_data(self.points.clone()).with_color(self.colour).with_stroke_width(1.8);
+        let plot = match self.pattern.dashes() {
+            Some(dashes) => plot.with_line_style(LineStyle::Custom(dashes.into())),
+            None => plot,
+        };
+        if self.name.is_empty() { plot } else { plot.with_legend(self.name.clone()) }.into()
+    }
 }
 
 impl Chart {
@@ -153,25 +199,12 @@ impl Chart {
     /// # Errors
     /// What the file system or the renderer says.
     pub fn save(&self, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
-        save(|| self.draw(), folder, name)
+        let (plots, layout) = self.draw();
+        save(render_multiple(plots, layout), folder, name)
     }
 
     fn draw(&self) -> (Vec<Plot>, Layout) {
-        let plots: Vec<Plot> = self
-            .lines
-            .iter()
-            .map(|line| {
-                let mut plot =
-                    LinePlot::new().with_data(line.points.clone()).with_color(line.colour).with_stroke_width(1.8);
-                plot = match line.pattern {
-                    Pattern::Solid => plot,
-                    Pattern::Dashed => plot.with_dashed(),
-                    Pattern::Dotted => plot.with_dotted(),
-                    Pattern::DashDotted => plot.with_dashdot(),
-                };
-                if line.name.is_empty() { plot } else { plot.with_legend(line.name.clone()) }.into()
-            })
-            .collect();
+        let plots: Vec<Plot> = self.lines.iter().map(Line::draw).collect();
         let mut layout = Layout::auto_from_plots(&plots)
             .with_title(self.title.clone())
             .with_x_label(self.x_label.clone())
@@ -193,7 +226,8 @@ impl MarkedChart {
     /// # Errors
     /// What the file system or the renderer says.
     pub fn save(&self, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
-        save(|| self.draw(), folder, name)
+        let (plots, layout) = self.draw();
+        save(render_multiple(plots, layout), folder, name)
     }
 
     fn draw(&self) -> (Vec<Plot>, Layout) {
@@ -266,7 +300,8 @@ impl FlankMap {
     /// # Errors
     /// What the file system or the renderer says.
     pub fn save(&self, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
-        save(|| self.draw(), folder, name)
+        let (plots, layout) = self.draw();
+        save(render_multiple(plots, layout), folder, name)
     }
 
     fn draw(&self) -> (Vec<Plot>, Layout) {
