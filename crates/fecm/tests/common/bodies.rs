@@ -11,6 +11,9 @@ use fecm::mesh::PlaneMesh;
 use fecm::mesh::blocks::{BlockMesher, Edge, geometric_breaks};
 use nalgebra::{Point2, Vector2};
 
+/// Traction (Pa) by place.
+pub type Traction<'a> = &'a dyn Fn(Point2<f64>) -> Vector2<f64>;
+
 /// A mesh, edges that carry load or springs, and the faces of its crack.
 pub struct Body {
     pub mesh: PlaneMesh,
@@ -30,12 +33,7 @@ pub struct Solution {
 impl Body {
     /// Solves under tractions (Pa) at places of edges, each uniform along the face; edges held, or all boundary on springs so soft that
     /// they only keep balanced loads from drifting.
-    pub fn solve(
-        &self,
-        basis: &FaceBasis,
-        held: Option<usize>,
-        tractions: &[(usize, &dyn Fn(Point2<f64>) -> Vector2<f64>)],
-    ) -> Solution {
+    pub fn solve(&self, basis: &FaceBasis, held: Option<usize>, tractions: &[(usize, Traction<'_>)]) -> Solution {
         let fixed: Vec<u32> = held.map_or_else(Vec::new, |k| self.edges[k].concat());
         let size = self.mesh.nodes.iter().map(|p| p.coords.norm()).fold(0.0, f64::max);
         let all: Vec<Vec<u32>> = self.edges.concat();
