@@ -5,6 +5,7 @@ use clap::{Parser, Subcommand};
 mod calculix;
 mod ci;
 mod dissertation;
+mod docs;
 mod work_precision;
 
 #[derive(Parser)]
@@ -21,6 +22,15 @@ enum Command {
         /// The slow tests as well.
         #[arg(long)]
         full: bool,
+    },
+    /// Builds the documentation into target/site and checks links, formulas, citations, commands, case files and code in it.
+    Docs {
+        /// Take committed pages that are not current for faults instead of writing them.
+        #[arg(long)]
+        check: bool,
+        /// Leave out the crates' API, which takes longest.
+        #[arg(long)]
+        no_api: bool,
     },
     /// Static transmission error against CalculiX (program `ccx`, Debian package calculix-ccx); writes docs/reports/calculix.md.
     PeerCalculix,
@@ -41,6 +51,7 @@ enum Command {
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::Ci { full } => ci::run(full),
+        Command::Docs { check, no_api } => docs::run(check, !no_api),
         Command::PeerCalculix => calculix::run(),
         Command::Dissertation { chapter } => dissertation::run(chapter),
         Command::WorkPrecision { study } => work_precision::run(study),
