@@ -6,6 +6,7 @@ mod calculix;
 mod ci;
 mod dissertation;
 mod docs;
+mod scene_costs;
 mod work_precision;
 
 #[derive(Parser)]
@@ -40,6 +41,8 @@ enum Command {
         #[arg(value_enum)]
         chapter: dissertation::Chapter,
     },
+    /// What each kind of scene leaves out and what that saves; writes docs/reports/scene-costs.md.
+    SceneCosts,
     /// Error against run time; writes docs/reports/work-precision-STUDY.md and plots.
     WorkPrecision {
         /// What to study.
@@ -54,6 +57,7 @@ fn main() -> anyhow::Result<()> {
         Command::Docs { check, no_api } => docs::run(check, !no_api),
         Command::PeerCalculix => calculix::run(),
         Command::Dissertation { chapter } => dissertation::run(chapter),
+        Command::SceneCosts => scene_costs::run(),
         Command::WorkPrecision { study } => work_precision::run(study),
     }
 }

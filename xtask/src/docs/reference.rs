@@ -16,7 +16,7 @@ pub fn pages() -> Vec<(PathBuf, String)> {
 
 fn page(kind: &CaseKind) -> String {
     let mut out = format!(
-        "# Case files of kind `{0}`\n\n<!-- written by `cargo xtask docs` from the schema; do not edit -->\n\n{1}\n`gearwright init {0}` writes one to \
+        "# Case files of kind `{0}`\n\n<!-- written by `cargo xtask docs` from the schema; do not edit -->\n\nThe file describes {1}. `gearwright init {0}` writes one to \
          start from, `gearwright explain KEY` says the same as this page.\n",
         kind.name, kind.about
     );
