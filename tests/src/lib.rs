@@ -1,1 +1,5 @@
-//! Cross-crate tests live in `tests/`; this library holds what they share.
+//! Cross-crate tests live in `tests/`; this library holds what they share, and runs the Rust of the documentation's pages.
+
+#[cfg(doctest)]
+#[doc = include_str!("../../docs/library.md")]
+pub struct LibraryPage;

@@ -4,12 +4,14 @@ use std::process::Command;
 
 use anyhow::{Context, ensure};
 
+use crate::docs;
+
 /// Runs all checks; with `full` the slow tests too.
 pub fn run(full: bool) -> anyhow::Result<()> {
     let test: &[&str] = &["test", "--release", "--workspace"];
     cargo(&["fmt", "--all", "--check"], &[])?;
     cargo(&["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"], &[])?;
-    cargo(&["doc", "--no-deps", "--workspace", "--release"], &[("RUSTDOCFLAGS", "-D warnings")])?;
+    docs::run(true, true)?;
     cargo(test, &[])?;
     if full {
         cargo(&[test, &["--", "--ignored"]].concat(), &[])?;
@@ -17,7 +19,8 @@ pub fn run(full: bool) -> anyhow::Result<()> {
     cargo(&["run", "--release", "--", "run", "configs/nonunity-pair.toml"], &[])
 }
 
-fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> anyhow::Result<()> {
+/// Runs cargo and waits; its output goes to the terminal.
+pub fn cargo(arguments: &[&str], environment: &[(&str, &str)]) -> anyhow::Result<()> {
     println!("cargo {}", arguments.join(" "));
     let status =
         Command::new(env!("CARGO")).args(arguments).envs(environment.iter().copied()).status().context("cargo")?;

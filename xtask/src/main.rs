@@ -5,7 +5,9 @@ use clap::{Parser, Subcommand};
 mod calculix;
 mod ci;
 mod dissertation;
+mod docs;
 mod reproduce;
+mod scene_costs;
 mod work_precision;
 
 #[derive(Parser)]
@@ -23,6 +25,15 @@ enum Command {
         #[arg(long)]
         full: bool,
     },
+    /// Builds the documentation into target/site and checks links, formulas, citations, commands, case files and code in it.
+    Docs {
+        /// Take committed pages that are not current for faults instead of writing them.
+        #[arg(long)]
+        check: bool,
+        /// Leave out the crates' API, which takes longest.
+        #[arg(long)]
+        no_api: bool,
+    },
     /// Static transmission error against CalculiX (program `ccx`, Debian package calculix-ccx); writes docs/reports/calculix.md.
     PeerCalculix,
     /// Printed results of the dissertation against computed ones; writes docs/reports/dissertation-CHAPTER.md.
@@ -33,6 +44,8 @@ enum Command {
     },
     /// Figures and tables of the dissertation, computed again from the case files, beside the printed numbers, on one page.
     ReproduceThesisFigures(reproduce::Options),
+    /// What each kind of scene leaves out and what that saves; writes docs/reports/scene-costs.md.
+    SceneCosts,
     /// Error against run time; writes docs/reports/work-precision-STUDY.md and plots.
     WorkPrecision {
         /// What to study.
@@ -44,9 +57,11 @@ enum Command {
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::Ci { full } => ci::run(full),
+        Command::Docs { check, no_api } => docs::run(check, !no_api),
         Command::PeerCalculix => calculix::run(),
         Command::Dissertation { chapter } => dissertation::run(chapter),
         Command::ReproduceThesisFigures(options) => reproduce::run(&options),
+        Command::SceneCosts => scene_costs::run(),
         Command::WorkPrecision { study } => work_precision::run(study),
     }
 }

@@ -7,6 +7,22 @@
 //! | [`output`] | tables, summary, ParaView files, the results folder |
 //! | [`plot`] | figures |
 //! | [`cli`] | commands and progress; the only module that writes to the terminal |
+//!
+//! A case, from text to gears in mesh; [`run::run`] would compute it into a folder:
+//!
+//! ```
+//! use gearwright::case::{self, Case, kind, template};
+//!
+//! let kind = kind::find("spur-pair").ok_or("no such kind")?;
+//! let text = template::commented(kind);
+//! let Case::SpurPair(case) = case::from_text(&text, "example.toml".as_ref())? else { return Err("another kind".into()) };
+//! assert_eq!(case.pair.pinion().teeth(), 25);
+//!
+//! // a mistake is told with its line and what is allowed
+//! let faults = case::from_text(&text.replace("teeth = 25", "teeth = 3"), "example.toml".as_ref()).unwrap_err().to_string();
+//! assert!(faults.contains("pinion.teeth"), "{faults}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod case;
 pub mod cli;

@@ -64,7 +64,7 @@ impl Panel {
             from_zero: false,
             logarithmic: false,
         };
-        let marked = MarkedChart { chart, marks: Vec::new(), x_range: None, y_up_to: None };
+        let marked = MarkedChart { chart, marks: Vec::new(), bands: Vec::new(), x_range: None, y_up_to: None };
         Self { letter, about: about.into(), picture: Picture::Chart(marked) }.tight()
     }
 

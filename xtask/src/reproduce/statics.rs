@@ -90,6 +90,8 @@ pub fn percent(case: &SpurPairCase, damage: &[Vec<gear_geom::ToothDamage>; 2]) -
                     gear_geom::CrackLength::Chord(fraction) => 100.0 * fraction,
                     gear_geom::CrackLength::Length(_) => 0.0,
                 },
+                // neither has a size in percent
+                Damage::Wear(_) | Damage::BrokenCorner(_) => 0.0,
             };
         }
     }
@@ -112,17 +114,20 @@ fn area_fraction(case: &SpurPairCase, member: gear_geom::Member, pit: &gear_geom
 
 fn series(case: &SpurPairCase, model: &PairModel, label: &str, percent: f64) -> anyhow::Result<Series> {
     let origin = case.inputs.analysis.mesh_cycle_origin;
-    let solve = |torques: Vec<f64>| -> anyhow::Result<Vec<Vec<Point>>> {
+    let solve = |torques: Vec<f64>, stiffness_difference: bool| -> anyhow::Result<Vec<Vec<Point>>> {
         let mesh_cycles = case.mesh_cycles.clone();
-        let request = StaticsRequest { mesh_cycles, torques, stiffness_difference: false, keep_pressure: false };
+        let request = StaticsRequest { mesh_cycles, torques, stiffness_difference, keep_pressure: false };
         let solved = model.solve(&request, &()).with_context(|| format!("the contact of {label} cannot be solved"))?;
         Ok(solved.results.iter().map(|results| points(results, origin)).collect())
     };
-    let points = solve(vec![case.inputs.load.torque_n_m])?.into_iter().next().ok_or_else(|| anyhow!("no positions"))?;
+    let points = solve(vec![case.inputs.load.torque_n_m], case.inputs.analysis.stiffness_by_differences)?
+        .into_iter()
+        .next()
+        .ok_or_else(|| anyhow!("no positions"))?;
     if points.is_empty() {
         return Err(anyhow!("no position of {label} has a usable answer"));
     }
-    let map = if case.map_torques.is_empty() { Vec::new() } else { solve(case.map_torques.clone())? };
+    let map = if case.map_torques.is_empty() { Vec::new() } else { solve(case.map_torques.clone(), false)? };
     Ok(Series { label: label.into(), percent, points, map })
 }
 
@@ -132,7 +137,7 @@ fn points(results: &[PositionResult], origin: f64) -> Vec<Point> {
         error: r.static_transmission_error * 1e6,
         no_load: r.no_load_transmission_error * 1e6,
         average: r.stiffness_average_slope.map(|k| k * 1e-6),
-        local: r.stiffness_local_slope.map(|k| k * 1e-6),
+        local: r.stiffness_local_slope_difference.or(r.stiffness_local_slope).map(|k| k * 1e-6),
         force: r.mesh_force,
         pairs: r
             .loaded_pairs()

@@ -278,7 +278,8 @@ impl PolarChart {
     /// # Errors
     /// What the file system or the renderer says.
     pub fn save(&self, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
-        save(|| self.draw(), folder, name)
+        let (plots, layout) = self.draw();
+        save(render_multiple(plots, layout), folder, name)
     }
 
     fn draw(&self) -> (Vec<Plot>, Layout) {

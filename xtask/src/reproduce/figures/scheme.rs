@@ -116,7 +116,7 @@ pub fn flank<'a>(
         let mut outlines = Vec::new();
         let own = severity.damage.iter().flatten().filter_map(|d| match &d.damage {
             Damage::Pit(pit) => Some(pit),
-            Damage::Crack(_) => None,
+            _ => None,
         });
         for shape in own.flat_map(|pit| &pit.shapes) {
             if let PitShape::Ellipse { centre, size, measure: along } = shape {
@@ -231,7 +231,8 @@ pub fn nonunity_model(context: &Context) -> anyhow::Result<Drawn> {
     {
         let solved = model.solve(&request, &())?;
         let results = solved.results.first().map_or(&[][..], Vec::as_slice);
-        let map = plots::flank_pressure("Pressure (MPa)", results, &case.pair, model.stats().symmetric, |_| true);
+        let map =
+            plots::flank_pressure("Pressure (MPa)", results, &case.pair, model.stats().symmetric, |_| true, |_, _| 0.0);
         let map = map.ok_or_else(|| anyhow::anyhow!("no contact at the position of panel {letter}"))?;
         drawn.panels.push(Panel { letter, about: about.into(), picture: Picture::Map(map) });
     }
