@@ -21,7 +21,7 @@ pub struct ImpulseSpec {
     pub torque: f64,
     /// Peak of the pulse as a fraction of the torque; teeth must stay in contact for a linear reading.
     pub pulse: f64,
-    /// Length of the record in natural periods, 8 to 10,000.
+    /// Length of the record in natural periods, 8 to 10,000; the half-power width wants some `1 / zeta` of them.
     pub periods: usize,
 }
 
@@ -187,7 +187,8 @@ mod tests {
             let step = 1.0 / (frequency * 640.0);
             let omega = 2.0 * std::f64::consts::PI * frequency;
             let damped = omega * (1.0 - ratio * ratio).sqrt();
-            let decay: Vec<f64> = (0..640 * 60)
+            // until nothing is left of the slowest
+            let decay: Vec<f64> = (0..640 * 200)
                 .map(|k| {
                     let t = f64::from(k) * step;
                     1e-6 * (-ratio * omega * t).exp() * (damped * t).sin()

@@ -30,7 +30,7 @@ pub fn series(path: &Path, results: &[PositionResult], stresses: &Stresses, orig
         "mesh_force_n",
         "mesh_stiffness_average_n_per_um",
         "mesh_stiffness_local_n_per_um",
-        "mesh_stiffness_local_difference_n_per_um",
+        "mesh_stiffness_tangent_n_per_um",
         "pairs_in_contact",
         "peak_pressure_mpa",
     ]
@@ -52,8 +52,8 @@ pub fn series(path: &Path, results: &[PositionResult], stresses: &Stresses, orig
             number(result.no_load_transmission_error * 1e6),
             number(result.mesh_force),
             optional(result.stiffness_average_slope, 1e-6),
+            optional(result.local_stiffness(), 1e-6),
             optional(result.stiffness_local_slope, 1e-6),
-            optional(result.stiffness_local_slope_difference, 1e-6),
             result.loaded_pairs().count().to_string(),
             number(result.peak_pressure() * 1e-6),
         ];
@@ -108,7 +108,7 @@ pub fn force_deflection(path: &Path, results: &[Vec<PositionResult>], origin: f6
             number(result.static_transmission_error * 1e6),
             number(result.no_load_transmission_error * 1e6),
             optional(result.stiffness_average_slope, 1e-6),
-            optional(result.stiffness_local_slope, 1e-6),
+            optional(result.local_stiffness(), 1e-6),
             result.loaded_pairs().count().to_string(),
             result.status.name().to_owned(),
         ])?;

@@ -37,7 +37,7 @@ pub struct Dynamics {
     /// What is written.
     #[serde(default)]
     pub output: Output,
-    /// Going on after an interruption. `gearwright run` of the same case and results folder takes up an interrupted run at its last
+    /// Going on after an interruption. `gearwright run CASE` of the same case and results folder takes up an interrupted run at its last
     /// checkpoint, with the same results to the last bit.
     #[serde(default)]
     pub checkpoint: Checkpoint,
