@@ -1,6 +1,6 @@
 //! The dissertation's figures and tables, computed again from the case files, beside the numbers printed there.
 //!
-//! A figure is one [`Figure`] of the [`registry`] and one function from [`Context`] to [`Drawn`]: pictures, tables, and values under the keys
+//! A figure is one [`Figure`] of the [`registry`] and one function from [`Context`] to [`drawn::Drawn`]: pictures, tables, and values under the keys
 //! of `docs/dissertation/printed.toml`. Everything else is common: what is up to date is not computed again ([`store`]), what fails is
 //! shown with its error, the page and the report are made from what is there ([`page`], [`report`]), and printed numbers are judged by
 //! the tolerance of their kind ([`printed`]).

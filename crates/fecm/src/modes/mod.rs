@@ -10,8 +10,8 @@
 //! A gear with cracks takes the modes of the healthy gear and its own compliance: cracks change stiffness at a tooth's root, which is
 //! static, and next to no mass.
 //!
-//! The gear is a ring of `N` equal sectors, so its modes follow from one sector: [`sector`] reduces it to its cuts and a few fields,
-//! [`harmonic`] couples the cuts for each nodal diameter `h`, [`krylov`] finds the lowest eigenpairs. Modes of `0 < h < N / 2` come in
+//! The gear is a ring of `N` equal sectors, so its modes follow from one sector: `sector` reduces it to its cuts and a few fields,
+//! `harmonic` couples the cuts for each nodal diameter `h`, `krylov` finds the lowest eigenpairs. Modes of `0 < h < N / 2` come in
 //! pairs, and the rule that fixes them is the mirror about the centre line of tooth 0: [`Twin::Even`] equals its image, [`Twin::Odd`]
 //! is opposite to it. Signs make the largest component positive. A pair is never split: one mode more than asked may be returned.
 //!
@@ -73,7 +73,7 @@ pub struct Mode {
     pub twin: Twin,
     /// Angular frequency (rad/s).
     pub angular_frequency: f64,
-    /// `phi^T M r` for [`RigidMotion::ALL`] (sqrt(kg) for translations, sqrt(kg) m for rotations).
+    /// `phi^T M r` for [`crate::mass::RigidMotion::ALL`] (sqrt(kg) for translations, sqrt(kg) m for rotations).
     pub rigid_coupling: [f64; 6],
     /// Column of the family's shapes.
     shape: usize,
