@@ -375,6 +375,22 @@ fn detection_counts_what_is_above_the_threshold() {
         assert!(out.join(name).exists(), "{name}");
     }
 
+    // Two conditions: a curve each.
+    let noisy: String =
+        (0..6).map(|k| format!("{k},{},{}\n", if k < 3 { 0 } else { 50 }, if k % 3 == 0 { 2 } else { 10 })).collect();
+    scratch.write("conditions.csv", &format!("recording,severity,condition\n{noisy}"));
+    let flags = ["--healthy", "healthy", "--damaged", "damaged", "--severities", "conditions.csv", "--sigmas", "6"];
+    succeed(scratch.path(), &[&base[..], &flags, &["--out", "conditions"]].concat());
+    let out = scratch.path().join("conditions");
+    let over = table(&out.join("detection_over_severity.csv"));
+    let found: Vec<_> = over
+        .iter()
+        .filter(|r| r["indicator"] == "fm4")
+        .map(|r| (&r["condition"][..], number(r, "severity"), &r["recordings"][..], number(r, "detection_rate")))
+        .collect();
+    assert_eq!(found, [("2", 0.0, "1", 0.0), ("2", 50.0, "1", 1.0), ("10", 0.0, "2", 0.0), ("10", 50.0, "2", 1.0)]);
+    assert!(out.join("detection_over_severity_condition_2.svg").exists());
+
     // Bad input, one message each.
     scratch.write("twice.csv", "recording,severity\n1.csv,2\n1.csv,3\n");
     scratch.write("words.csv", "recording,severity\n1.csv,much\n");

@@ -64,7 +64,8 @@ pub struct Flags {
     /// Of a folder of recordings, so many of the last are the damaged state.
     #[arg(long, requires = "signal")]
     damaged_last: Option<u32>,
-    /// Text file with columns recording and severity: probability of detection over severity.
+    /// Text file with columns recording, severity and, if wanted, condition (level of noise, ..): probability
+    /// of detection over severity.
     #[arg(long, value_name = "FILE", requires = "signal")]
     severities: Option<String>,
     /// Angles of the sensors about the housing (degrees), one for each channel, e.g. 0,90,180: polar maps.

@@ -74,19 +74,28 @@ pub fn roc(path: &Path, all: &[Detected]) -> Result<(), csv::Error> {
     Ok(())
 }
 
-/// `detection_over_severity.csv`: share of recordings above the threshold for each severity.
+/// `detection_over_severity.csv`: share of recordings above the threshold for each condition and severity.
 ///
 /// # Errors
 /// I/O errors.
 pub fn severities(path: &Path, all: &[Detected]) -> Result<(), csv::Error> {
     let mut table = csv::Writer::from_path(path)?;
-    let columns =
-        ["severity", "threshold", "recordings", "above", "detection_rate", "detection_rate_low", "detection_rate_high"];
+    let columns = [
+        "condition",
+        "severity",
+        "threshold",
+        "recordings",
+        "above",
+        "detection_rate",
+        "detection_rate_low",
+        "detection_rate_high",
+    ];
     table.write_record(NAME.iter().chain(&columns))?;
     for detected in all {
         for (severity, found) in &detected.by_severity {
             let mut record = name(detected).to_vec();
-            record.extend([number(*severity), optional(detected.limit.map(|limit| limit.threshold))]);
+            record.push(severity.condition.clone());
+            record.extend([number(severity.value), optional(detected.limit.map(|limit| limit.threshold))]);
             record.extend([found.cases, found.hits].map(|count| count.to_string()));
             record.extend(rate(Some(*found)));
             table.write_record(record)?;

@@ -344,8 +344,9 @@ pub struct Detection {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 1000000))]
     pub damaged_last: Option<u32>,
-    /// Text file with the columns "recording" (name of its file) and "severity" (a number: size of damage, level of noise, ..): gives the
-    /// probability of detection over severity. Recordings of the damaged set that are not in it are left out there.
+    /// Text file with the columns "recording" (name of its file), "severity" (a number: size of damage, level of noise, ..) and, if wanted,
+    /// "condition" (level of noise, load, ..): gives the probability of detection over severity, for each condition and channel. Recordings of
+    /// the damaged set that are not in it are left out there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub severities: Option<String>,
 }

@@ -25,11 +25,28 @@ pub fn charts(case: &RecordingCase, outcome: &Outcome) -> Vec<(String, MarkedCha
         };
         let shown: Vec<&Detected> = TRENDS.iter().filter_map(of).collect();
         charts.push((name("roc"), roc(case, channel, &shown)));
-        if shown.iter().any(|detected| detected.by_severity.len() > 1) {
-            charts.push((name("detection_over_severity"), over_severity(case, channel, &shown)));
+        for (number, condition) in conditions(&shown).into_iter().enumerate() {
+            let what = match (condition, number) {
+                ("", _) => "detection_over_severity".to_owned(),
+                (_, number) => format!("detection_over_severity_condition_{}", number + 1),
+            };
+            charts.push((name(&what), over_severity(case, channel, condition, &shown)));
         }
     }
     charts
+}
+
+/// Conditions with more than one severity, in their order.
+fn conditions<'a>(shown: &[&'a Detected]) -> Vec<&'a str> {
+    let all = shown.iter().flat_map(|detected| &detected.by_severity).map(|(severity, _)| &severity.condition[..]);
+    let mut found: Vec<&str> = Vec::new();
+    for condition in all {
+        let severities = |d: &&Detected| d.by_severity.iter().filter(|(s, _)| s.condition == condition).count();
+        if !found.contains(&condition) && shown.iter().any(|detected| severities(detected) > 1) {
+            found.push(condition);
+        }
+    }
+    found
 }
 
 fn named(detected: &Detected, extra: &str) -> String {
@@ -58,17 +75,19 @@ fn roc(case: &RecordingCase, channel: &str, shown: &[&Detected]) -> MarkedChart 
     MarkedChart { chart, marks: Vec::new(), bands: Vec::new(), x_range: Some((0.0, 1.0)), y_up_to: Some(1.0) }
 }
 
-fn over_severity(case: &RecordingCase, channel: &str, shown: &[&Detected]) -> MarkedChart {
-    let some: Vec<&&Detected> = shown.iter().filter(|detected| !detected.by_severity.is_empty()).collect();
-    let lines: Vec<Line> = some
+fn over_severity(case: &RecordingCase, channel: &str, condition: &str, shown: &[&Detected]) -> MarkedChart {
+    let under = |detected: &Detected| -> Vec<(f64, f64)> {
+        let here = detected.by_severity.iter().filter(|(severity, _)| severity.condition == condition);
+        here.map(|(severity, rate)| (severity.value, rate.value())).collect()
+    };
+    let lines: Vec<Line> = shown
         .iter()
+        .filter(|detected| !under(detected).is_empty())
         .enumerate()
-        .map(|(index, detected)| {
-            let points = detected.by_severity.iter().map(|(severity, rate)| (*severity, rate.value())).collect();
-            line(named(detected, ""), index, points)
-        })
+        .map(|(index, detected)| line(named(detected, ""), index, under(detected)))
         .collect();
-    let title = heading(case, &format!("probability of detection of {channel}"));
+    let at = if condition.is_empty() { String::new() } else { format!(", condition {condition}") };
+    let title = heading(case, &format!("probability of detection of {channel}{at}"));
     let mut chart = chart(title, "Severity", "Share above the threshold".into(), lines);
     chart.from_zero = true;
     MarkedChart { chart, marks: Vec::new(), bands: Vec::new(), x_range: None, y_up_to: Some(1.0) }

@@ -1,6 +1,7 @@
 //! How well indicators tell damaged from healthy recordings: rates of detection and of false alarms, receiver operating characteristic,
 //! probability of detection over severity.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -30,8 +31,29 @@ pub struct Detected {
     pub roc: Roc,
     /// The threshold that detects most with at most [`FALSE_ALARMS`] of the healthy set above it.
     pub best: RocPoint,
-    /// Share above the threshold for each severity, rising.
-    pub by_severity: Vec<(f64, Rate)>,
+    /// Share above the threshold for each condition and severity, rising.
+    pub by_severity: Vec<(Severity, Rate)>,
+}
+
+/// What the table of severities says of a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Severity {
+    /// Under what it was recorded (level of noise, load, ..); empty where the table does not say. Conditions have curves of their own.
+    pub condition: String,
+    /// Size of the damage, or whatever detection is plotted over.
+    pub value: f64,
+}
+
+impl Severity {
+    /// By condition as a number where both are, as text otherwise; then by value.
+    fn order(&self, other: &Self) -> Ordering {
+        let number = |severity: &Self| severity.condition.parse::<f64>().ok();
+        let conditions = match (number(self), number(other)) {
+            (Some(a), Some(b)) => a.total_cmp(&b),
+            (a, b) => b.is_some().cmp(&a.is_some()).then_with(|| self.condition.cmp(&other.condition)),
+        };
+        conditions.then(self.value.total_cmp(&other.value))
+    }
 }
 
 /// Detection by every indicator that both sets have, in the order of the tables.
@@ -40,7 +62,7 @@ pub fn detect(
     healthy: &[&Measured],
     damaged: &[&Measured],
     limits: &Limits,
-    severities: Option<&BTreeMap<String, f64>>,
+    severities: Option<&BTreeMap<String, Severity>>,
 ) -> Vec<Detected> {
     let Some(first) = damaged.first() else { return Vec::new() };
     let rows = first.channels.iter().flat_map(|channel| channel.rows.iter().map(move |row| (&channel.name, row)));
@@ -72,29 +94,29 @@ fn over_severity(
     channel: &str,
     row: &Row,
     threshold: f64,
-    severities: &BTreeMap<String, f64>,
-) -> Vec<(f64, Rate)> {
-    let mut sets: Vec<(f64, Vec<f64>)> = Vec::new();
+    severities: &BTreeMap<String, Severity>,
+) -> Vec<(Severity, Rate)> {
+    let mut sets: Vec<(&Severity, Vec<f64>)> = Vec::new();
     for measured in damaged {
         let stem = Path::new(&measured.name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let severity = severities.get(&measured.name).or_else(|| severities.get(&stem));
-        let (Some(&severity), Some(value)) = (severity, measured.value(channel, row)) else { continue };
-        match sets.iter_mut().find(|set| set.0.total_cmp(&severity).is_eq()) {
+        let (Some(severity), Some(value)) = (severity, measured.value(channel, row)) else { continue };
+        match sets.iter_mut().find(|set| set.0 == severity) {
             Some(set) => set.1.push(value),
             None => sets.push((severity, vec![value])),
         }
     }
-    sets.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sets.sort_by(|a, b| a.0.order(b.0));
     let values: Vec<&[f64]> = sets.iter().map(|set| &set.1[..]).collect();
     let rates = detection_curve(&values, threshold).unwrap_or_default();
-    sets.iter().map(|set| set.0).zip(rates).collect()
+    sets.iter().map(|set| set.0.clone()).zip(rates).collect()
 }
 
 /// Reads a table of severities by recording.
 ///
 /// # Errors
 /// [`RecordingError::Missing`], [`RecordingError::Severities`] with the line at fault.
-pub fn severities(path: &Path) -> Result<BTreeMap<String, f64>, RecordingError> {
+pub fn severities(path: &Path) -> Result<BTreeMap<String, Severity>, RecordingError> {
     if !path.is_file() {
         return Err(RecordingError::Missing { path: path.into(), key: "detection.severities (--severities)" });
     }
@@ -102,19 +124,19 @@ pub fn severities(path: &Path) -> Result<BTreeMap<String, f64>, RecordingError> 
     let read = |e: csv::Error| fault(e.position().map_or(1, csv::Position::line), e.to_string());
     let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(read)?;
     let header = table.headers().map_err(read)?.clone();
-    let column = |name: &str| {
-        let found = header.iter().position(|heading| heading.eq_ignore_ascii_case(name));
-        found.ok_or_else(|| fault(1, format!("there is no column \"{name}\"")))
-    };
+    let named = |name: &str| header.iter().position(|heading| heading.eq_ignore_ascii_case(name));
+    let column = |name: &str| named(name).ok_or_else(|| fault(1, format!("there is no column \"{name}\"")));
     let (name, severity) = (column("recording")?, column("severity")?);
+    let condition = named("condition");
     let mut found = BTreeMap::new();
     for row in table.records() {
         let row = row.map_err(read)?;
         let line = row.position().map_or(0, csv::Position::line);
         let (name, text) = (row.get(name).unwrap_or_default(), row.get(severity).unwrap_or_default());
-        let value: Option<f64> = text.parse().ok().filter(|value: &f64| value.is_finite());
+        let value: Option<f64> = text.parse().ok().filter(|value: &f64| value.is_finite()).map(|value| value + 0.0);
         let Some(value) = value else { return Err(fault(line, format!("severity `{text}` is not a number"))) };
-        if found.insert(name.to_owned(), value).is_some() {
+        let condition = condition.and_then(|column| row.get(column)).unwrap_or_default().to_owned();
+        if found.insert(name.to_owned(), Severity { condition, value }).is_some() {
             return Err(fault(line, format!("recording \"{name}\" comes twice")));
         }
     }

@@ -187,7 +187,7 @@ pub enum RecordingError {
     },
     /// The table of severities is of no use.
     #[error(
-        "{path}: line {line}: {reason}; correct detection.severities (--severities): two columns, recording and severity"
+        "{path}: line {line}: {reason}; correct detection.severities (--severities): columns recording and severity, and condition if wanted"
     )]
     Severities {
         /// The table.

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use super::detection::{self, Detected};
+use super::detection::{self, Detected, Severity};
 use super::error::RecordingError;
 use super::judge::Limits;
 use super::measure::Measured;
@@ -24,7 +24,7 @@ pub struct Files {
     /// A damaged set of its own.
     pub damaged: Vec<PathBuf>,
     /// Severities of the damaged set, by name.
-    pub severities: Option<BTreeMap<String, f64>>,
+    pub severities: Option<BTreeMap<String, Severity>>,
 }
 
 impl Files {
@@ -119,7 +119,7 @@ pub fn detection(
     entries: &[Entry],
     healthy: &[&Measured],
     limits: &Limits,
-    severities: Option<&BTreeMap<String, f64>>,
+    severities: Option<&BTreeMap<String, Severity>>,
 ) -> Result<Option<Detection>, RecordingError> {
     let Some(plan) = &case.detection else { return Ok(None) };
     let (set, path) = match &plan.damaged {
