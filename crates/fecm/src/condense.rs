@@ -18,7 +18,7 @@ use crate::element::ReferenceQuad;
 use crate::element::lagrange::gauss_rule;
 use crate::error::FecmError;
 use crate::face::FaceBasis;
-use crate::linalg::{BlockCholesky, BlockMatrix, product, symmetrise};
+use crate::linalg::{BlockCholesky, BlockMatrix, product_of_sparse_rows, symmetrise};
 use crate::mesh::PlaneMesh;
 
 /// A body to condense: its mesh and what is held and retained.
@@ -90,7 +90,7 @@ impl CondensedBody {
         let mut retained_solution = coupling.clone();
         factor.solve_in_place(retained_solution.as_mut());
         let mut stiffness = retained;
-        stiffness -= product(coupling.transpose(), retained_solution.as_ref());
+        stiffness -= product_of_sparse_rows(&coupling, &retained_solution);
         symmetrise(&mut stiffness);
         Ok(Self { block, roles, factor, retained_solution, stiffness })
     }

@@ -20,7 +20,7 @@
 //! | `K_I` | opening, positive when the faces part | Pa sqrt(m) |
 //! | `K_II` | sliding, positive when the face at `x_2 > 0` moves along `x_1` against the other | Pa sqrt(m) |
 //!
-//! Everything is linear in the displacement, so factors are [`Functional`]s. Verified on edge-cracked plates in tension and shear
+//! Everything is linear in the displacement, so factors are [`PlaneFunctional`]s. Verified on edge-cracked plates in tension and shear
 //! (`tests/stress.rs`).
 
 use std::collections::HashSet;
@@ -31,7 +31,7 @@ use nalgebra::{Matrix2, Matrix3, Point2, Vector2};
 use crate::element::ReferenceQuad;
 use crate::element::lagrange::gauss_rule;
 use crate::face::FaceBasis;
-use crate::functional::{Functional, PointShapes};
+use crate::functional::{PlaneFunctional, PointShapes};
 use crate::mesh::PlaneMesh;
 
 /// The neighbourhood of a crack tip in a mesh, out to where the weight ends.
@@ -120,27 +120,21 @@ impl CrackTipZone {
         self.radius
     }
 
-    /// `K_I` and `K_II` at face position `z` (m) as functionals of the displacement in one symmetry family.
+    /// `K_I` and `K_II` along the face as functionals of the displacement in one symmetry family.
     #[must_use]
-    pub fn intensities(&self, basis: &FaceBasis, z: f64) -> [Functional; 2] {
-        let mut factors = [Functional::default(), Functional::default()];
-        for (mode, functional) in [Mode::Opening, Mode::Sliding].into_iter().zip(&mut factors) {
+    pub fn intensities(&self, basis: &FaceBasis) -> [PlaneFunctional; 2] {
+        [Mode::Opening, Mode::Sliding].map(|mode| {
+            let mut factor = PlaneFunctional::default();
             let fields = UnitField::new(basis, mode);
             for sample in &self.plane {
                 let (weights, axial) = self.area_terms(&fields, sample);
-                functional.add_gradient(basis, z, sample.shapes(), &weights, &axial);
+                factor.add(sample.shapes(), &weights, &axial);
             }
             for sample in &self.faces {
-                functional.add_gradient(
-                    basis,
-                    z,
-                    sample.shapes(),
-                    &self.face_terms(&fields, sample),
-                    &Matrix3::zeros(),
-                );
+                factor.add(sample.shapes(), &self.face_terms(&fields, sample), &Matrix3::zeros());
             }
-        }
-        factors
+            factor
+        })
     }
 
     /// +1 if the element lies at `x_2 > 0` of the crack, which may be curved, -1 otherwise.

@@ -12,8 +12,8 @@ use crate::face::FaceBasis;
 /// `sum w u` over the unknowns of nodes, in Cartesian components.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Functional {
-    /// By node and degree of freedom.
-    weights: BTreeMap<(u32, usize), f64>,
+    /// Node, degree of freedom, weight.
+    terms: Vec<(u32, usize, f64)>,
 }
 
 /// Shape functions at a point of an element, and their derivatives with respect to `x` and `y` (1/m).
@@ -27,41 +27,49 @@ pub struct PointShapes<'a> {
     pub gradients: &'a [Vector2<f64>],
 }
 
-impl Functional {
-    /// Adds `sum_cj weights_cj du_c/dx_j + axial_cj d^2 u_c / dx_j dz` at a point of the plane and face position `z` (m).
-    pub fn add_gradient(
-        &mut self,
-        basis: &FaceBasis,
-        z: f64,
-        point: PointShapes<'_>,
-        weights: &Matrix3<f64>,
-        axial: &Matrix3<f64>,
-    ) {
-        for (d, dof) in basis.dofs().iter().enumerate() {
-            let c = dof.component;
-            let [value, slope, curvature] = basis.derivatives(dof.degree, z);
-            for ((&node, shape), gradient) in point.nodes.iter().zip(point.values).zip(point.gradients) {
-                let along = |w: &Matrix3<f64>, f: f64, df: f64| {
-                    (w[(c, 0)] * gradient.x + w[(c, 1)] * gradient.y) * f + w[(c, 2)] * shape * df
-                };
-                *self.weights.entry((node, d)).or_default() +=
-                    along(weights, value, slope) + along(axial, slope, curvature);
+/// A functional at any face position `z`: `sum_cj a_cj du_c/dx_j + b_cj d^2 u_c / dx_j dz` over points of the plane, before `z` is known.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PlaneFunctional {
+    /// By node: for each component, the factors of value, slope and curvature of its functions along the face.
+    weights: BTreeMap<u32, [[f64; 3]; 3]>,
+}
+
+impl PlaneFunctional {
+    /// Adds a point of the plane with weights `a` and `b`.
+    pub fn add(&mut self, point: PointShapes<'_>, a: &Matrix3<f64>, b: &Matrix3<f64>) {
+        for ((&node, shape), gradient) in point.nodes.iter().zip(point.values).zip(point.gradients) {
+            for (c, [value, slope, curvature]) in self.weights.entry(node).or_default().iter_mut().enumerate() {
+                let in_plane = |w: &Matrix3<f64>| w[(c, 0)] * gradient.x + w[(c, 1)] * gradient.y;
+                *value += in_plane(a);
+                *slope += a[(c, 2)] * shape + in_plane(b);
+                *curvature += b[(c, 2)] * shape;
             }
         }
     }
 
-    /// Adds `weight` times one unknown.
-    pub fn add(&mut self, node: u32, dof: usize, weight: f64) {
-        *self.weights.entry((node, dof)).or_default() += weight;
+    /// The functional at face position `z` (m), over the unknowns of one symmetry family.
+    #[must_use]
+    pub fn at(&self, basis: &FaceBasis, z: f64) -> Functional {
+        let along: Vec<_> = basis.dofs().iter().map(|dof| (dof.component, basis.derivatives(dof.degree, z))).collect();
+        let of_node = |(&node, weights): (&u32, &[[f64; 3]; 3])| {
+            let dot = |(d, (c, along)): (usize, &(usize, [f64; 3]))| {
+                (node, d, weights[*c].iter().zip(along).map(|(weight, function)| weight * function).sum())
+            };
+            along.iter().enumerate().map(dot).collect::<Vec<_>>()
+        };
+        Functional { terms: self.weights.iter().flat_map(of_node).collect() }
     }
+}
 
+impl Functional {
     /// Nodes, degrees of freedom and weights, ascending.
-    pub fn terms(&self) -> impl Iterator<Item = (u32, usize, f64)> + '_ {
-        self.weights.iter().map(|(&(node, dof), &weight)| (node, dof, weight))
+    #[must_use]
+    pub fn terms(&self) -> &[(u32, usize, f64)] {
+        &self.terms
     }
 
     /// Value on a field given by its unknowns.
     pub fn value(&self, mut unknown: impl FnMut(u32, usize) -> f64) -> f64 {
-        self.terms().map(|(node, dof, weight)| weight * unknown(node, dof)).sum()
+        self.terms.iter().map(|&(node, dof, weight)| weight * unknown(node, dof)).sum()
     }
 }

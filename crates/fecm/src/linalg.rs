@@ -1,7 +1,7 @@
 //! Linear algebra of the crate: the only file that names faer's parallelism.
 //!
-//! Everything here runs on the calling thread (`Par::Seq`): parallelism sits outside, over bodies and
-//! positions, so that results do not depend on the number of threads.
+//! Dense operations run on the calling thread (`Par::Seq`): parallelism sits outside, over bodies, positions and panels of right-hand
+//! sides, so that results do not depend on the number of threads.
 //!
 //! * [`BlockCholesky`]: sparse Cholesky factorisation of a symmetric positive definite matrix given as dense
 //!   blocks on the edges of a node graph. The fill-reducing order (approximate minimum degree) is found on the
@@ -27,6 +27,20 @@ pub fn product(a: MatRef<'_, f64>, b: MatRef<'_, f64>) -> Mat<f64> {
     let mut c = Mat::zeros(a.nrows(), b.ncols());
     matmul(c.as_mut(), Accum::Replace, a, b, 1.0, Par::Seq);
     c
+}
+
+/// `a^T * b`, skipping the rows that are zero in all of `a`.
+#[must_use]
+pub fn product_of_sparse_rows(a: &Mat<f64>, b: &Mat<f64>) -> Mat<f64> {
+    let mut filled = vec![false; a.nrows()];
+    for j in 0..a.ncols() {
+        for (flag, value) in filled.iter_mut().zip(a.col_as_slice(j)) {
+            *flag |= *value != 0.0;
+        }
+    }
+    let rows: Vec<usize> = (0..a.nrows()).filter(|&row| filled[row]).collect();
+    let gather = |m: &Mat<f64>| Mat::from_fn(rows.len(), m.ncols(), |i, j| m[(rows[i], j)]);
+    product(gather(a).transpose(), gather(b).as_ref())
 }
 
 /// `c += alpha * a * b`.
@@ -301,9 +315,21 @@ pub struct BlockCholesky {
     size: usize,
 }
 
+/// Right-hand sides solved together.
+const PANEL: usize = 64;
+
 impl BlockCholesky {
-    /// Solves in place for every column of `rhs`.
+    /// Solves in place for every column of `rhs`: panels of columns in parallel, the same panels on any number of threads.
     pub fn solve_in_place(&self, rhs: MatMut<'_, f64>) {
+        if rhs.ncols() <= PANEL {
+            return self.solve_panel(rhs);
+        }
+        let half = rhs.ncols().div_ceil(2 * PANEL) * PANEL;
+        let (left, right) = rhs.split_at_col_mut(half);
+        rayon::join(|| self.solve_in_place(left), || self.solve_in_place(right));
+    }
+
+    fn solve_panel(&self, rhs: MatMut<'_, f64>) {
         let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(rhs.ncols(), Par::Seq));
         LltRef::<'_, usize, f64>::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
             Conj::No,

@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Point2, Vector2};
 
 use crate::element::lagrange::{LagrangeBasis, gauss_rule};
 use crate::face::FaceBasis;
-use crate::functional::{Functional, PointShapes};
+use crate::functional::{PlaneFunctional, PointShapes};
 use crate::mesh::PlaneMesh;
 
 /// A point of a surface and the edge that holds it.
@@ -54,18 +54,18 @@ impl SurfacePoint {
         rule.into_iter().map(|(x, _)| x).map(point).collect()
     }
 
-    /// Tangential stress at face position `z` (Pa per m of displacement).
+    /// Tangential stress along the face (Pa per m of displacement).
     #[must_use]
-    pub fn stress(&self, basis: &FaceBasis, z: f64) -> Functional {
+    pub fn stress(&self, basis: &FaceBasis) -> PlaneFunctional {
         let (lambda, mu) = (basis.lambda(), basis.shear());
         let shared = 2.0 * lambda * mu / (lambda + 2.0 * mu);
         let in_plane = self.tangent * self.tangent.transpose() * (2.0 * mu + shared);
         let mut weights = Matrix3::zeros();
         weights.fixed_view_mut::<2, 2>(0, 0).copy_from(&in_plane);
         weights[(2, 2)] = shared;
-        let mut functional = Functional::default();
+        let mut functional = PlaneFunctional::default();
         let point = PointShapes { nodes: &self.nodes, values: &self.values, gradients: &self.gradients };
-        functional.add_gradient(basis, z, point, &weights, &Matrix3::zeros());
+        functional.add(point, &weights, &Matrix3::zeros());
         functional
     }
 }

@@ -27,7 +27,7 @@ fn stresses(
     field: impl Fn(&fecm::functional::Functional) -> f64,
 ) -> Vec<(nalgebra::Point2<f64>, f64)> {
     let points = edges.iter().flat_map(|edge| SurfacePoint::of_edge(&body.mesh, edge));
-    points.map(|point| (point.place, field(&point.stress(basis, z)))).collect()
+    points.map(|point| (point.place, field(&point.stress(basis).at(basis, z)))).collect()
 }
 
 /// G. Lame: a ring pulled outward by `p` on its outside has `2 p b^2 / (b^2 - a^2)` around its bore, in every face model and everywhere along a free face.
@@ -106,7 +106,7 @@ fn factors(
     value: impl Fn(&fecm::functional::Functional) -> f64,
 ) -> [f64; 2] {
     let zone = CrackTipZone::new(&body.mesh, [&body.crack[0], &body.crack[1]], reach).unwrap();
-    let [one, two] = zone.intensities(basis, z);
+    let [one, two] = zone.intensities(basis).map(|factor| factor.at(basis, z));
     [value(&one), value(&two)]
 }
 

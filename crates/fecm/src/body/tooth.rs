@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 use gear_geom::{FlankSide, Gear, RootCrack};
 use nalgebra::{Point2, Vector2};
 
@@ -29,6 +29,8 @@ pub struct Station {
 pub struct SectorFamily {
     /// The condensed sector.
     pub condensed: CondensedBody,
+    /// Interior row of every flank unknown: of slot `s` and function `d` at `s * functions + d`.
+    flank_rows: Vec<usize>,
     /// Depth displacements by unit flank loads with the cuts held.
     pub(super) base: Mat<f64>,
     /// Rows of `X` at the flank nodes: displacement by unit cut displacement.
@@ -105,7 +107,7 @@ impl ToothSector {
         let base = Mat::from_fn(depth_rows.len(), flank_rows.len(), |i, j| loads[(depth_rows[i], j)]);
         let at_flank = Mat::from_fn(flank_rows.len(), solution.ncols(), |i, j| solution[(flank_rows[i], j)]);
         let at_depth = Mat::from_fn(depth_rows.len(), solution.ncols(), |i, j| solution[(depth_rows[i], j)]);
-        Ok(SectorFamily { condensed, base, at_flank, at_depth })
+        Ok(SectorFamily { condensed, flank_rows, base, at_flank, at_depth })
     }
 
     /// Interior rows of the in-plane unknowns of numbered nodes, in slot order.
@@ -268,18 +270,39 @@ impl ToothSector {
         (position, normal)
     }
 
-    /// Adds the inward normal load of a station, given in the functions along the face of a family (N), to the interior loads.
-    pub fn add_load(&self, family: usize, station: &Station, modal: &[f64], loads: &mut Mat<f64>) {
-        let family = &self.families[family];
+    /// Adds the inward normal load of a station, given in the functions along the face of a family (N), to the loads on its flank unknowns.
+    pub fn add_load(station: &Station, modal: &[f64], flank: &mut Mat<f64>) {
         for &(slot, weight) in &station.load {
-            let node = self.flank_nodes[slot];
             for (k, force) in modal.iter().enumerate() {
-                for (c, share) in [weight.x, weight.y].into_iter().enumerate() {
-                    if let Some(row) = family.condensed.interior_row(node, 2 * k + c) {
-                        loads[(row, 0)] -= share * force;
-                    }
-                }
+                let row = 2 * (slot * modal.len() + k);
+                flank[(row, 0)] -= weight.x * force;
+                flank[(row + 1, 0)] -= weight.y * force;
             }
         }
+    }
+}
+
+impl SectorFamily {
+    /// Number of flank unknowns: in-plane ones of the loaded flank's nodes.
+    #[must_use]
+    pub fn flank_size(&self) -> usize {
+        self.flank_rows.len()
+    }
+
+    /// Rows of a matrix over interior unknowns that are flank unknowns.
+    pub(crate) fn at_flank_of(&self, interior: MatRef<'_, f64>) -> Mat<f64> {
+        Mat::from_fn(self.flank_rows.len(), interior.ncols(), |i, j| interior[(self.flank_rows[i], j)])
+    }
+
+    /// Loads on flank unknowns as loads on all interior unknowns.
+    #[must_use]
+    pub fn interior_load(&self, flank: &Mat<f64>) -> Mat<f64> {
+        let mut interior = Mat::zeros(self.condensed.interior_size(), flank.ncols());
+        for j in 0..flank.ncols() {
+            for (i, &row) in self.flank_rows.iter().enumerate() {
+                interior[(row, j)] = flank[(i, j)];
+            }
+        }
+        interior
     }
 }

@@ -62,7 +62,8 @@ impl PairModel {
                 let sides = [crack.nodes[0].as_slice(), crack.nodes[1].as_slice()];
                 let Some(zone) = CrackTipZone::new(&sector.shape.mesh, sides, ZONE) else { continue };
                 let of_family = |family: &crate::body::Family| -> Vec<Functional> {
-                    faces.iter().flat_map(|&z| zone.intensities(&family.basis, z)).collect()
+                    let factors = zone.intensities(&family.basis);
+                    faces.iter().flat_map(|&z| factors.each_ref().map(|factor| factor.at(&family.basis, z))).collect()
                 };
                 let functionals: Vec<_> = body.families.iter().map(of_family).collect();
                 let reading = SectorReading::new(body, sector, &functionals);

@@ -57,7 +57,7 @@ impl BodyDeformation {
     }
 }
 
-/// Fields of all sectors from the loads on some.
+/// Fields of all sectors from the loads on the flanks of some.
 fn recover(body: &GearBody, index: usize, loads: &[Option<Mat<f64>>]) -> Result<Vec<Vec<f64>>, FecmError> {
     let teeth = loads.len();
     let ends = cut_displacements(body, index, loads)?;
@@ -70,7 +70,7 @@ fn recover(body: &GearBody, index: usize, loads: &[Option<Mat<f64>>]) -> Result<
         let shape = &sector.shape;
         let mut interior = match &loads[tooth] {
             Some(load) => {
-                let mut own = load.clone();
+                let mut own = family.interior_load(load);
                 family.condensed.solve_interior(&mut own);
                 own
             }
@@ -113,8 +113,7 @@ fn cut_displacements(body: &GearBody, index: usize, loads: &[Option<Mat<f64>>]) 
     let mut cut_loads = vec![Mat::<f64>::zeros(n, 1); teeth];
     for (tooth, load) in loads.iter().enumerate() {
         let Some(load) = load else { continue };
-        let solution = body.sector(tooth as i32).families[index].condensed.retained_solution();
-        let reduced = solution.transpose() * load;
+        let reduced = body.sector(tooth as i32).families[index].at_flank.transpose() * load;
         for i in 0..n {
             cut_loads[tooth][(i, 0)] -= reduced[(i, 0)];
             cut_loads[(tooth + 1) % teeth][(i, 0)] -= reduced[(n + i, 0)];

@@ -4,7 +4,7 @@
 //!
 //! `r . u = (K_II^-1 r_I) . f_a + (X^T r_I - r_C) . sum_b G_ab X_b^T f_b`,
 //!
-//! so that one solve per functional serves all positions and torques.
+//! so that one solve per functional serves all positions and torques. Loads `f` act on the flank, so only its rows of `K_II^-1 r_I` and `X` are kept.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -20,7 +20,7 @@ use crate::face::FaceBasis;
 use crate::functional::Functional;
 use crate::linalg::product;
 
-/// Loads on the interior unknowns of the teeth of one gear: `[family]` by tooth in `0..teeth`.
+/// Loads on the flank unknowns of the teeth of one gear: `[family]` by tooth in `0..teeth`.
 pub(super) type ToothLoads = BTreeMap<i32, Vec<Mat<f64>>>;
 
 impl PairModel {
@@ -32,7 +32,7 @@ impl PairModel {
         for patch in &position.patches {
             let tooth = self.tooth_of(patch.pair, member);
             let sector = body.sector(tooth);
-            let empty = || sector.families.iter().map(|f| Mat::zeros(f.condensed.interior_size(), 1)).collect();
+            let empty = || sector.families.iter().map(|f| Mat::zeros(f.flank_size(), 1)).collect();
             let loads: &mut Vec<Mat<f64>> = teeth.entry(tooth).or_insert_with(empty);
             let area = patch.cell[0] * patch.cell[1] * places;
             let rolls = if member == 0 { &patch.pinion_roll } else { &patch.wheel_roll };
@@ -41,14 +41,14 @@ impl PairModel {
                     continue;
                 }
                 let station = sector.station(*roll)?;
-                for (index, (family, load)) in body.families.iter().zip(&mut *loads).enumerate() {
+                for (family, load) in body.families.iter().zip(&mut *loads) {
                     let mut modal = vec![0.0; family.basis.plane_degrees().len()];
                     for (z, pressure) in patch.face.iter().zip(pressures) {
                         for (sum, value) in modal.iter_mut().zip(family.basis.plane_values(*z)) {
                             *sum += value * pressure * area;
                         }
                     }
-                    sector.add_load(index, &station, &modal, load);
+                    ToothSector::add_load(&station, &modal, load);
                 }
             }
         }
@@ -79,8 +79,8 @@ pub(super) struct SectorReading {
 }
 
 struct FamilyReading {
-    /// `K_II^-1 r_I`, a column a functional.
-    interior: Mat<f64>,
+    /// Rows of `K_II^-1 r_I` at the flank, a column a functional.
+    at_flank: Mat<f64>,
     /// `X^T r_I - r_C`.
     cuts: Mat<f64>,
 }
@@ -100,14 +100,13 @@ impl SectorReading {
         for (index, (reading, family)) in self.families.iter().zip(&body.families).enumerate() {
             let mut add = |part: Mat<f64>| sums.iter_mut().enumerate().for_each(|(k, sum)| *sum += part[(k, 0)]);
             if let Some(own) = loads.get(&tooth) {
-                add(product(reading.interior.transpose(), own[index].as_ref()));
+                add(product(reading.at_flank.transpose(), own[index].as_ref()));
             }
             for (&other, load) in loads {
                 if family.ring.offset(tooth, other).abs() > reach {
                     continue;
                 }
-                let solution = body.sector(other).families[index].condensed.retained_solution();
-                let on_cuts = product(solution.transpose(), load[index].as_ref());
+                let on_cuts = product(body.sector(other).families[index].at_flank.transpose(), load[index].as_ref());
                 let between = self.between(index, tooth, other, || {
                     product(reading.cuts.transpose(), family.ring.pair(tooth, other).as_ref())
                 });
@@ -137,7 +136,7 @@ impl FamilyReading {
         let mut interior = Mat::zeros(condensed.interior_size(), list.len());
         let mut on_cuts = Mat::<f64>::zeros(condensed.stiffness().nrows(), list.len());
         for (k, functional) in list.iter().enumerate() {
-            for (node, dof, weight) in functional.terms() {
+            for &(node, dof, weight) in functional.terms() {
                 if let Some(row) = condensed.interior_row(node, dof) {
                     interior[(row, k)] += weight;
                     continue;
@@ -159,6 +158,6 @@ impl FamilyReading {
         let mut cuts = product(condensed.retained_solution().transpose(), interior.as_ref());
         cuts -= on_cuts;
         condensed.solve_interior(&mut interior);
-        Self { interior, cuts }
+        Self { at_flank: sector.families[index].at_flank_of(interior.as_ref()), cuts }
     }
 }

@@ -126,7 +126,11 @@ impl RootReading {
         let faces = face_positions(model, body);
         let functionals = body.families.iter().map(|family| {
             let points = sides.iter().flatten();
-            points.flat_map(|(point, _, _)| faces.iter().map(|&z| point.stress(&family.basis, z))).collect()
+            let along = |(point, _, _): &(SurfacePoint, f64, bool)| {
+                let stress = point.stress(&family.basis);
+                faces.iter().map(|&z| stress.at(&family.basis, z)).collect::<Vec<_>>()
+            };
+            points.flat_map(along).collect()
         });
         let functionals: Vec<Vec<_>> = functionals.collect();
         let reading = SectorReading::new(body, sector, &functionals);
