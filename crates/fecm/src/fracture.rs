@@ -20,6 +20,8 @@
 //! | `K_I` | opening, positive when the faces part | Pa sqrt(m) |
 //! | `K_II` | sliding, positive when the face at `x_2 > 0` moves along `x_1` against the other | Pa sqrt(m) |
 //!
+//! Faces that press on each other add `-int t_i u^a_i,1 q ds` ([`CrackTipZone::of_face_force`]), without which a closed crack would seem to have a `K_I`.
+//!
 //! Everything is linear in the displacement, so factors are [`PlaneFunctional`]s. Verified on edge-cracked plates in tension and shear
 //! (`tests/stress.rs`).
 
@@ -41,6 +43,8 @@ pub struct CrackTipZone {
     /// Columns: along the crack and across.
     axes: Matrix2<f64>,
     radius: f64,
+    /// Side of the crack on which each face's material lies: +1 at `x_2 > 0`.
+    sides: [f64; 2],
     plane: Vec<Sample>,
     faces: Vec<Sample>,
 }
@@ -90,7 +94,7 @@ impl CrackTipZone {
         if !(radius > 0.0 && radius.is_finite()) {
             return None;
         }
-        let mut zone = Self { tip, axes, radius, plane: Vec::new(), faces: Vec::new() };
+        let mut zone = Self { tip, axes, radius, sides: [1.0, -1.0], plane: Vec::new(), faces: Vec::new() };
         let points = quadrature(p);
         for element in 0..mesh.element_count() {
             let nodes = mesh.element(element);
@@ -103,6 +107,9 @@ impl CrackTipZone {
             let side = (0..2).find(|&k| nodes.iter().any(|n| sides[k].contains(n)));
             let turn = side.map(|_| zone.side_of(mesh, element));
             let corner = mesh.corners(element).iter().position(|&n| n == tip_node);
+            if let (Some(side), Some(turn), Some(_)) = (side, turn, corner) {
+                zone.sides[side] = turn;
+            }
             let rule = corner.map_or_else(|| points.clone(), |corner| tip_quadrature(p, corner));
             for (local, weight) in rule {
                 zone.add_plane(mesh, &quad, element, local, weight, turn);
@@ -134,6 +141,22 @@ impl CrackTipZone {
                 factor.add(sample.shapes(), &self.face_terms(&fields, sample), &Matrix3::zeros());
             }
             factor
+        })
+    }
+
+    /// What a force per width (N/m) on the material at a place of a face (the first or the second) adds to `K_I` and `K_II` beside what the
+    /// displacement says: the faces' part of the integral, `-E' / 2 F . u^a,1 q`. Without it only faces free of load are read rightly.
+    #[must_use]
+    pub fn of_face_force(&self, basis: &FaceBasis, face: usize, place: Point2<f64>, force: Vector2<f64>) -> [f64; 2] {
+        let polar = self.polar(place, Some(self.sides[face]));
+        if !(polar[0] > 0.0 && polar[0] < self.radius) {
+            return [0.0; 2];
+        }
+        let (q, _) = self.cover(polar);
+        [Mode::Opening, Mode::Sliding].map(|mode| {
+            let field = UnitField::new(basis, mode);
+            let along = self.axes * field.at(polar).gradient.column(0);
+            -field.scale * q * along.dot(&force)
         })
     }
 

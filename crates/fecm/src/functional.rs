@@ -62,6 +62,13 @@ impl PlaneFunctional {
 }
 
 impl Functional {
+    /// From nodes, degrees of freedom and weights, no unknown twice.
+    #[must_use]
+    pub fn new(mut terms: Vec<(u32, usize, f64)>) -> Self {
+        terms.sort_unstable_by_key(|&(node, dof, _)| (node, dof));
+        Self { terms }
+    }
+
     /// Nodes, degrees of freedom and weights, ascending.
     #[must_use]
     pub fn terms(&self) -> &[(u32, usize, f64)] {

@@ -5,6 +5,7 @@
 //! | [`element`], [`mesh`], [`face`], [`assembly`] | finite elements of an extruded body |
 //! | [`condense`], [`ring`] | one sector condensed, the ring of sectors closed |
 //! | [`functional`], [`fracture`], [`surface`] | what is read from a displacement field: crack tips, stress on free surfaces |
+//! | [`crack_faces`] | where the faces of a crack can press on each other |
 //! | [`body`] | a gear as the contact problem sees it |
 //! | [`mass`], [`modes`] | inertia of a gear, and its elastic modes with the hub held |
 //! | [`profile`], [`pairing`], [`search`] | flanks in space, exact separations, tip contact |
@@ -45,6 +46,7 @@ pub mod assembly;
 pub mod body;
 pub mod condense;
 pub mod contact;
+pub mod crack_faces;
 pub mod dynamics;
 pub mod element;
 pub mod error;

@@ -47,6 +47,15 @@ impl FlankSide {
             Self::Upper => 1.0,
         }
     }
+
+    /// The flank on the other side of the tooth.
+    #[must_use]
+    pub fn other(self) -> Self {
+        match self {
+            Self::Lower => Self::Upper,
+            Self::Upper => Self::Lower,
+        }
+    }
 }
 
 /// Tooth thickness.

@@ -57,6 +57,27 @@ fn column(file: &Path, name: &str) -> Vec<f64> {
 }
 
 #[test]
+fn crack_on_the_coast_side_closes_and_is_felt_less() {
+    let scratch = Scratch::new();
+    let increase_with = |keys: &str| {
+        let damage = format!("[[damage]]\non = \"pinion\"\ncrack.length_percent = [30.0, 60.0]\n{keys}");
+        let output = run(&scratch, "plane-strain", &damage);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let folder = scratch.path().join("out/case");
+        (column(&folder.join("damage.csv"), "ste_increase_max_percent"), folder)
+    };
+    let (opening, _) = increase_with("");
+    let (closing, folder) = increase_with("crack.side = \"coast\"\n");
+    assert!(
+        closing.iter().zip(&opening).all(|(closed, open)| 0.0 < *closed && *closed < 0.5 * open),
+        "{closing:?} {opening:?}"
+    );
+    let forces = column(&folder.join("series_damage_2.csv"), "pinion_tooth_0_crack_face_force_n");
+    assert!(forces.iter().all(|&force| force >= 0.0) && forces.iter().any(|&force| force > 100.0), "{forces:?}");
+    assert!(column(&folder.join("damage.csv"), "crack_face_force_max_n")[1] > 100.0);
+}
+
+#[test]
 fn sweep_of_cracks_and_pits_leaves_tables_plots_and_grids() {
     for (model, damage, files) in [
         ("plane-strain", "[[damage]]\non = \"pinion\"\ncrack.length_percent = [0.0, 20.0, 60.0]\n", 3),
@@ -97,6 +118,9 @@ fn sweep_of_cracks_and_pits_leaves_tables_plots_and_grids() {
             assert_eq!(column(&folder.join("crack_front_3.csv"), "tooth"), vec![0.0; healthy.len()]);
             assert!(!folder.join("crack_front_1.csv").exists() && folder.join("damage_stress_intensity.png").exists());
             assert_eq!(healthy, column(&folder.join("series_damage_1.csv"), "ste_um"), "no crack is healthy");
+        }
+        for name in ["damage_stress_intensity_by_length.svg", "damage_root_stress_by_length.png"] {
+            assert_eq!(folder.join(name).exists(), damage.contains("0.0, 20.0"), "{name}: only for sweeps of cracks");
         }
         for name in [
             "damage_transmission_error.png",

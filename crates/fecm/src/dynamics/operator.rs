@@ -79,7 +79,7 @@ pub(super) struct Operator {
 impl Operator {
     /// From the static solution at a position.
     pub fn new(
-        settled: Settled,
+        mut settled: Settled,
         model: &PairModel,
         load_factor: f64,
         flanks: Flanks,
@@ -102,9 +102,9 @@ impl Operator {
         }
         let motion = motions(&settled, pairing, flanks, system);
         let mut modes = Mat::zeros(size, system.mode_count());
-        let mut compliance = settled.compliance;
+        // crack faces that the static load closes stay closed
+        let mut compliance = settled.take_held_compliance()?;
         let mut step_motion = motion.clone();
-        let settled = Settled { compliance: Mat::new(), ..settled };
         // teeth that meet on their coast flanks deform as they would at rest
         if system.mode_count() > 0 && flanks == Flanks::Drive {
             modes = flank_modes.openings(&settled, model)?;

@@ -33,7 +33,7 @@ impl ContactSolver for ActiveSetSolver {
             return Ok(solution);
         }
         let active = match warm {
-            Some(warm) if warm.len() == problem.size() && warm.iter().any(|&a| a) => warm.to_vec(),
+            Some(warm) if warm.len() == problem.size() && problem.can_balance(warm) => warm.to_vec(),
             _ => first_set(problem),
         };
         let mut cells = Loaded { problem, tolerance: self.tolerance };
@@ -78,8 +78,8 @@ impl CellProblem for Loaded<'_> {
         wrong
     }
 
-    fn revived(&self) -> Option<Vec<bool>> {
-        Some(first_set(self.problem))
+    fn revived(&self, active: &[bool]) -> Option<Vec<bool>> {
+        (!self.problem.can_balance(active)).then(|| first_set(self.problem))
     }
 }
 
@@ -89,12 +89,12 @@ fn first_set(problem: &ContactProblem<'_>) -> Vec<bool> {
         return Vec::new();
     };
     let force = problem.load / problem.arm[cell];
-    let mut order: Vec<usize> = (0..problem.size()).collect();
+    let mut order: Vec<usize> = problem.closing_cells().collect();
     order.sort_by(|&i, &j| (problem.gap[i] / problem.arm[i]).total_cmp(&(problem.gap[j] / problem.arm[j])));
     // a first guess of the deflection: the load spread evenly over the half of the cells nearest to touching
-    let share = order[..problem.size().div_ceil(2)].to_vec();
+    let share = order[..order.len().div_ceil(2)].to_vec();
     let even = force / share.len() as f64;
     let mean: f64 = share.iter().map(|&j| problem.compliance[(cell, j)] * even).sum();
     let limit = touch + mean.max(0.0) / problem.arm[cell];
-    (0..problem.size()).map(|i| problem.gap[i] / problem.arm[i] <= limit).collect()
+    (0..problem.size()).map(|i| problem.arm[i] > 0.0 && problem.gap[i] / problem.arm[i] <= limit).collect()
 }

@@ -232,7 +232,7 @@ impl CellProblem for Held<'_> {
         wrong
     }
 
-    fn revived(&self) -> Option<Vec<bool>> {
+    fn revived(&self, _active: &[bool]) -> Option<Vec<bool>> {
         None
     }
 }

@@ -36,7 +36,8 @@ impl ContactSolver for LemkeSolver {
         }
         let n = problem.size();
         let touch = problem.touch();
-        let mean = |values: &dyn Fn(usize) -> f64| (0..n).map(values).sum::<f64>() / n as f64;
+        let closing = problem.closing_cells().count();
+        let mean = |values: &dyn Fn(usize) -> f64| problem.closing_cells().map(values).sum::<f64>() / closing as f64;
         let arm = mean(&|i| problem.arm[i]);
         let compliance = mean(&|i| problem.compliance[(i, i)]);
         let deflection = problem.load / arm * compliance;
@@ -50,8 +51,9 @@ impl ContactSolver for LemkeSolver {
         let outcome = lemke(matrix.as_ref(), &constant, self.pivots_per_unknown * (n + 1));
         let status = if outcome.solved { SolveStatus::Converged } else { SolveStatus::IterationLimit };
         let mut cells: Vec<usize> = (0..n).filter(|&i| outcome.z[i] > 0.0).collect();
-        if cells.is_empty() {
+        if !cells.iter().any(|&cell| problem.arm[cell] > 0.0) {
             cells.extend(problem.first_touch().map(|(_, cell)| cell));
+            cells.sort_unstable();
         }
         let mut on = problem.on_active(&cells)?;
         let mut factorisations = 1;
@@ -60,7 +62,7 @@ impl ContactSolver for LemkeSolver {
             let largest = on.forces.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
             let kept: Vec<usize> =
                 cells.iter().zip(&on.forces).filter(|(_, f)| **f >= -1e-12 * largest).map(|(c, _)| *c).collect();
-            if kept.len() == cells.len() || kept.is_empty() {
+            if kept.len() == cells.len() || !kept.iter().any(|&cell| problem.arm[cell] > 0.0) {
                 break;
             }
             cells = kept;

@@ -1,9 +1,12 @@
 //! The contact problem at one position: a linear complementarity problem with one rigid approach.
 //!
-//! Given cells with compliance `C` (symmetric positive definite), gaps `g`, lever arms `a > 0` and a load `T`, find forces and an approach
+//! Given cells with compliance `C` (symmetric positive definite), gaps `g`, lever arms `a >= 0` and a load `T`, find forces and an approach
 //! `phi` of either sign with
 //!
 //! `gap = g + C f - a phi >= 0`, `f >= 0`, `f . gap = 0`, `a . f = T`
+//!
+//! Cells with an arm are closed by the approach. Cells without one lie within a body, such as the faces of a crack: neither does the approach
+//! close them nor do their forces balance the load, so they start apart or touching (`g >= 0`) and only `C` couples them to the others.
 //!
 //! These are the Karush-Kuhn-Tucker conditions of `min 1/2 f C f + g f` over `a . f = T`, `f >= 0`; the solution is unique (dissertation section 3.2.1;
 //! Cottle, Pang and Stone, *The Linear Complementarity Problem*, 1992, section 1.4).

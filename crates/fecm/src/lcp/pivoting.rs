@@ -22,8 +22,8 @@ pub(super) trait CellProblem {
     /// Cells on the wrong side, ascending.
     fn wrong_cells(&self, cells: &[usize], active: &[bool], on: &Self::OnActive) -> Vec<usize>;
 
-    /// A set to go on from when no cell is left; `None` where no contact is an answer.
-    fn revived(&self) -> Option<Vec<bool>>;
+    /// A set to go on from in place of one that has no solution; `None` for one that has.
+    fn revived(&self, active: &[bool]) -> Option<Vec<bool>>;
 }
 
 /// Outcome of [`block_pivoting`].
@@ -67,9 +67,7 @@ pub(super) fn block_pivoting<P: CellProblem>(
             active[cell] = !active[cell];
         }
         pivots += exchange.len();
-        if !active.iter().any(|&a| a)
-            && let Some(set) = problem.revived()
-        {
+        if let Some(set) = problem.revived(&active) {
             active = set;
         }
     }

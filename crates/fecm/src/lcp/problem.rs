@@ -12,7 +12,7 @@ pub struct ContactProblem<'a> {
     pub compliance: MatRef<'a, f64>,
     /// `g`: gaps without deformation (m).
     pub gap: &'a [f64],
-    /// `a`: lever arms, also closing per unit of approach (m), positive.
+    /// `a`: lever arms, also closing per unit of approach (m), not negative; cells without one have a gap that is not negative.
     pub arm: &'a [f64],
     /// `T` (N m), not negative.
     pub load: f64,
@@ -105,8 +105,11 @@ impl ContactProblem<'_> {
             if !self.gap[cell].is_finite() {
                 return value("gap", self.gap[cell], "finite (m)");
             }
-            if !(self.arm[cell] > 0.0 && self.arm[cell].is_finite()) {
-                return value("arm", self.arm[cell], "positive (m)");
+            if !(self.arm[cell] >= 0.0 && self.arm[cell].is_finite()) {
+                return value("arm", self.arm[cell], "0 or more (m)");
+            }
+            if self.arm[cell] == 0.0 && self.gap[cell] < 0.0 {
+                return value("gap without an arm", self.gap[cell], "0 or more (m)");
             }
             if !(diagonal > 0.0 && diagonal.is_finite()) {
                 return value("own compliance", diagonal, "positive (m/N)");
@@ -115,10 +118,20 @@ impl ContactProblem<'_> {
         Ok(())
     }
 
+    /// Cells that the approach closes.
+    pub(super) fn closing_cells(&self) -> impl Iterator<Item = usize> {
+        (0..self.size()).filter(|&cell| self.arm[cell] > 0.0)
+    }
+
+    /// Whether a set of cells can balance a load.
+    pub(super) fn can_balance(&self, active: &[bool]) -> bool {
+        active.iter().zip(self.arm).any(|(active, arm)| *active && *arm > 0.0)
+    }
+
     /// Approach at first touch without load (rad), and its cell.
     pub(super) fn first_touch(&self) -> Option<(f64, usize)> {
         let touch = |cell: usize| (self.gap[cell] / self.arm[cell], cell);
-        (0..self.size()).map(touch).min_by(|a, b| a.0.total_cmp(&b.0))
+        self.closing_cells().map(touch).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// Outcomes that need no solving: no cells, or no load.

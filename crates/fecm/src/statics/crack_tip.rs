@@ -1,14 +1,17 @@
 //! Stress-intensity factors of cracked teeth over the mesh cycle ([`crate::fracture`]).
 //!
 //! In three dimensions the factors are those of places along the crack front, with plane strain at the tip; at the ends of the face, where that is not
-//! the state of the tip, they lose their meaning within a distance of the order of the zone's radius.
+//! the state of the tip, they lose their meaning within a distance of the order of the zone's radius. A crack whose faces press on each other up to the tip
+//! has no `K_I`; what is left of it is the error of the pressure's concentration in nodes.
 
 use rayon::prelude::*;
 
+use super::crack_contact::CrackFaceContact;
 use super::model::PairModel;
 use super::reading::SectorReading;
 use super::result::PositionResult;
 use super::root_stress::face_positions;
+use crate::body::{Family, GearBody};
 use crate::error::FecmError;
 use crate::fracture::{CrackTipZone, ZONE};
 use crate::functional::Functional;
@@ -46,6 +49,7 @@ struct CrackReading {
     member: usize,
     tooth: i32,
     faces: Vec<f64>,
+    zone: CrackTipZone,
     reading: SectorReading,
 }
 
@@ -61,17 +65,35 @@ impl PairModel {
                 let Some(crack) = &sector.shape.crack else { continue };
                 let sides = [crack.nodes[0].as_slice(), crack.nodes[1].as_slice()];
                 let Some(zone) = CrackTipZone::new(&sector.shape.mesh, sides, ZONE) else { continue };
-                let of_family = |family: &crate::body::Family| -> Vec<Functional> {
+                let of_family = |family: &Family| -> Vec<Functional> {
                     let factors = zone.intensities(&family.basis);
                     faces.iter().flat_map(|&z| factors.each_ref().map(|factor| factor.at(&family.basis, z))).collect()
                 };
                 let functionals: Vec<_> = body.families.iter().map(of_family).collect();
-                let reading = SectorReading::new(body, sector, &functionals);
-                cracks.push(CrackReading { member, tooth, faces: faces.clone(), reading });
+                let reading = SectorReading::new(
+                    body,
+                    sector,
+                    &functionals,
+                    self.crack_on(member, tooth).map(|crack| &crack.openings[..]),
+                );
+                cracks.push(CrackReading { member, tooth, faces: faces.clone(), zone, reading });
             }
         }
         CrackTipReader { model: self, cracks }
     }
+}
+
+/// Force per width (N/m) at face position `z` of forces (N) at places of the face: their expansion in the functions along it.
+fn line_load(body: &GearBody, places: &[f64], forces: &[f64], z: f64) -> f64 {
+    let of_family = |family: &Family| -> f64 {
+        let mut modal = vec![0.0; family.basis.plane_degrees().len()];
+        for (&place, force) in places.iter().zip(forces) {
+            modal.iter_mut().zip(family.basis.plane_values(place)).for_each(|(sum, value)| *sum += value * force);
+        }
+        let at = family.basis.plane_values(z).into_iter().zip(family.basis.plane_norms());
+        at.zip(modal).map(|((value, norm), sum)| value * sum / norm).sum()
+    };
+    body.families.iter().map(of_family).sum()
 }
 
 impl CrackTipReader<'_> {
@@ -90,7 +112,8 @@ impl CrackTipReader<'_> {
         for crack in &self.cracks {
             let (member, tooth) = (crack.member, crack.tooth);
             let loads = self.model.tooth_loads(position, member)?;
-            let values = crack.reading.values(&self.model.bodies[member], tooth, &loads, self.model.reach(member));
+            let mut values = crack.reading.values(&self.model.bodies[member], tooth, &loads, self.model.reach(member));
+            self.add_face_loads(crack, position, &mut values);
             tips.extend(crack.faces.iter().zip(values.chunks_exact(2)).map(|(&face, factors)| CrackTip {
                 member,
                 tooth,
@@ -100,6 +123,27 @@ impl CrackTipReader<'_> {
             }));
         }
         Ok(tips)
+    }
+
+    /// Adds what faces that press on each other have of the factors.
+    fn add_face_loads(&self, crack: &CrackReading, position: &PositionResult, values: &mut [f64]) {
+        let is_here = |contact: &&CrackFaceContact| contact.member == crack.member && contact.tooth == crack.tooth;
+        let contact = position.crack_faces.iter().find(is_here);
+        let faces = self.model.crack_on(crack.member, crack.tooth);
+        let (Some(contact), Some(faces)) = (contact, faces) else { return };
+        let body = &self.model.bodies[crack.member];
+        let mesh = &body.sector(crack.tooth).shape.mesh;
+        for (row, forces) in contact.force.iter().enumerate() {
+            let (nodes, normal) = faces.cells.row(row);
+            let place = mesh.nodes[nodes[0] as usize];
+            for (&z, values) in crack.faces.iter().zip(values.chunks_exact_mut(2)) {
+                let on_tooth = normal * line_load(body, &contact.face, forces, z);
+                for (side, force) in [on_tooth, -on_tooth].into_iter().enumerate() {
+                    let part = crack.zone.of_face_force(&body.families[0].basis, side, place, force);
+                    values.iter_mut().zip(part).for_each(|(value, part)| *value += part);
+                }
+            }
+        }
     }
 
     /// Factors of many positions, in parallel.

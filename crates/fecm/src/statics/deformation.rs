@@ -26,12 +26,19 @@ impl PairModel {
     pub fn deformation(&self, position: &PositionResult, member: usize) -> Result<BodyDeformation, FecmError> {
         let body = &self.bodies[member];
         let teeth = body.teeth();
-        let mut on_teeth = self.tooth_loads(position, member)?;
+        let on_teeth = self.tooth_loads(position, member)?;
         let mut coefficients = vec![Vec::new(); teeth as usize];
         for index in 0..body.families.len() {
-            let mut take =
-                |tooth: i32| on_teeth.get_mut(&tooth).map(|loads| std::mem::replace(&mut loads[index], Mat::new()));
-            let loads: Vec<Option<Mat<f64>>> = (0..teeth).map(&mut take).collect();
+            let load_on = |tooth: i32| {
+                let load = on_teeth.get(&tooth)?;
+                let family = &body.sector(tooth).families[index];
+                let mut interior = family.interior_load(&load.flank[index]);
+                if let Some(crack) = self.crack_on(member, tooth) {
+                    crack.add_load(index, &family.condensed, &load.faces, &mut interior);
+                }
+                Some(SectorLoad { interior, cuts: &load.cuts[index] })
+            };
+            let loads: Vec<Option<SectorLoad<'_>>> = (0..teeth).map(load_on).collect();
             let fields = recover(body, index, &loads)?;
             for (sector, field) in coefficients.iter_mut().zip(fields) {
                 sector.push(field);
@@ -57,8 +64,16 @@ impl BodyDeformation {
     }
 }
 
-/// Fields of all sectors from the loads on the flanks of some.
-fn recover(body: &GearBody, index: usize, loads: &[Option<Mat<f64>>]) -> Result<Vec<Vec<f64>>, FecmError> {
+/// Load on a sector, in one family.
+struct SectorLoad<'a> {
+    /// On its interior unknowns.
+    interior: Mat<f64>,
+    /// The same carried to its cuts, `X^T f`.
+    cuts: &'a Mat<f64>,
+}
+
+/// Fields of all sectors from the loads on some.
+fn recover(body: &GearBody, index: usize, loads: &[Option<SectorLoad<'_>>]) -> Result<Vec<Vec<f64>>, FecmError> {
     let teeth = loads.len();
     let ends = cut_displacements(body, index, loads)?;
     let basis = &body.families[index].basis;
@@ -70,7 +85,7 @@ fn recover(body: &GearBody, index: usize, loads: &[Option<Mat<f64>>]) -> Result<
         let shape = &sector.shape;
         let mut interior = match &loads[tooth] {
             Some(load) => {
-                let mut own = family.interior_load(load);
+                let mut own = load.interior.clone();
                 family.condensed.solve_interior(&mut own);
                 own
             }
@@ -105,7 +120,11 @@ fn recover(body: &GearBody, index: usize, loads: &[Option<Mat<f64>>]) -> Result<
 
 /// Displacements of the two cuts of every sector (lower, then upper). The ring is closed once more, all its sectors in it as they
 /// are: a cyclic block-tridiagonal system, condensed to the teeth that are loaded or damaged.
-fn cut_displacements(body: &GearBody, index: usize, loads: &[Option<Mat<f64>>]) -> Result<Vec<Mat<f64>>, FecmError> {
+fn cut_displacements(
+    body: &GearBody,
+    index: usize,
+    loads: &[Option<SectorLoad<'_>>],
+) -> Result<Vec<Mat<f64>>, FecmError> {
     let teeth = loads.len();
     let stiffness = |tooth: usize| body.sector(tooth as i32).families[index].condensed.stiffness();
     let n = stiffness(0).nrows() / 2;
@@ -113,7 +132,7 @@ fn cut_displacements(body: &GearBody, index: usize, loads: &[Option<Mat<f64>>]) 
     let mut cut_loads = vec![Mat::<f64>::zeros(n, 1); teeth];
     for (tooth, load) in loads.iter().enumerate() {
         let Some(load) = load else { continue };
-        let reduced = body.sector(tooth as i32).families[index].at_flank.transpose() * load;
+        let reduced = load.cuts;
         for i in 0..n {
             cut_loads[tooth][(i, 0)] -= reduced[(i, 0)];
             cut_loads[(tooth + 1) % teeth][(i, 0)] -= reduced[(n + i, 0)];

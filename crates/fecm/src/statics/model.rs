@@ -1,11 +1,12 @@
 //! A gear pair made ready for contact: bodies condensed, pairs placed, near fields tabulated.
 
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 use gear_geom::{Damage, GearPair, RootCrack, ToothDamage};
 
+use super::crack_contact::CrackFaces;
 use super::options::PairModelOptions;
 use crate::body::{BodyOptions, BodySizes, GearBody};
 use crate::error::FecmError;
@@ -21,6 +22,7 @@ pub struct PairModel {
     pub(super) face: FaceCells,
     /// By the bits of the cell size.
     near_fields: Arc<Mutex<BTreeMap<u64, Arc<NearField>>>>,
+    crack_faces: OnceLock<CrackFaces>,
     condensation_time: Duration,
 }
 
@@ -65,7 +67,15 @@ impl PairModel {
             FaceCells::new(common, 1, false)
         };
         let near_fields = Arc::default();
-        Ok(Self { pairing, bodies, options: options.clone(), face, near_fields, condensation_time: started.elapsed() })
+        Ok(Self {
+            pairing,
+            bodies,
+            options: options.clone(),
+            face,
+            near_fields,
+            crack_faces: OnceLock::new(),
+            condensation_time: started.elapsed(),
+        })
     }
 
     /// The same pair with other damage. What damage does not touch is shared: a healthy gear as a whole, of a cracked one all but the cracked
@@ -95,6 +105,7 @@ impl PairModel {
             options,
             face: self.face.clone(),
             near_fields: Arc::clone(&self.near_fields),
+            crack_faces: OnceLock::new(),
             condensation_time: started.elapsed(),
         })
     }
@@ -127,6 +138,11 @@ impl PairModel {
     #[must_use]
     pub fn options(&self) -> &PairModelOptions {
         &self.options
+    }
+
+    /// Faces of all cracks; made once.
+    pub(super) fn crack_faces(&self) -> &CrackFaces {
+        self.crack_faces.get_or_init(|| CrackFaces::new(&self.bodies))
     }
 
     /// Near field of a cell size; made once.

@@ -42,6 +42,8 @@ pub struct ContactOptions {
     /// work-precision study, 8 cells a half width: the tangent errs by 0.8 %, 1 % of torque by 0.7 %, 10 % by 0.3 %; what the curvature
     /// of the force-deflection curve costs at 10 % is `0.1^2 / 27`, 0.04 %.
     pub slope_step: f64,
+    /// Whether faces of cracks that close press on each other; otherwise they pass through each other freely.
+    pub crack_face_contact: bool,
     /// Solver of the contact problem.
     pub solver: SolverKind,
 }
@@ -54,6 +56,7 @@ impl Default for ContactOptions {
             matching_depth: 0.15,
             edge_correction: true,
             slope_step: 0.1,
+            crack_face_contact: true,
             solver: SolverKind::default(),
         }
     }

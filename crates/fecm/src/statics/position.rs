@@ -2,6 +2,7 @@
 
 use faer::Mat;
 
+use super::crack_contact::{CrackCells, CrackState};
 use super::model::{PairModel, on_ladder};
 use super::result::{PairState, PositionResult, PositionStats, PositionStatus, PressurePatch};
 use crate::contact::{ContactGrid, PairGrid};
@@ -60,6 +61,10 @@ pub struct Settled {
     pub compliance: Mat<f64>,
     /// Forces, and the approach from `grid_rotation` on.
     pub solution: ContactSolution,
+    /// Cells of the cracks that feel the load.
+    pub(crate) cracks: Option<CrackCells>,
+    /// Their state, where faces press on each other.
+    pub(crate) crack_state: Option<CrackState>,
     /// Whether it can be used.
     pub status: PositionStatus,
     /// Closing rotation of the wheel at which the gaps were taken (rad).
@@ -162,12 +167,13 @@ impl PairModel {
             }
             let same_cells = |before: &ContactGrid| grid.has_the_cells_of(before);
             let near_enough = (rotation - compliance_from).abs() < COMPLIANCE_TOLERANCE * (rotation - no_load);
-            let compliance = match outcome.take() {
-                Some(before) if near_enough && same_cells(&before.grid) => before.compliance,
+            let (compliance, cracks) = match outcome.take() {
+                Some(before) if near_enough && same_cells(&before.grid) => (before.compliance, before.cracks),
                 _ => {
                     compliance_from = rotation;
                     let bodies = [&*self.bodies[0], &*self.bodies[1]];
-                    grid.compliance(bodies, self.pairing.tooth_steps(), &self.near_field(cell))?
+                    let compliance = grid.compliance(bodies, self.pairing.tooth_steps(), &self.near_field(cell))?;
+                    (compliance, self.crack_faces().cells(self, &grid)?)
                 }
             };
             let active =
@@ -175,7 +181,7 @@ impl PairModel {
             let (gaps, arms) = (grid.gaps(), grid.wheel_arms());
             let problem =
                 ContactProblem { compliance: compliance.as_ref(), gap: &gaps, arm: &arms, load: request.torque };
-            let solution = solve_contact(self.options.contact.solver, &problem, active.as_deref())?;
+            let (solution, crack_state) = self.solve_cells(&problem, cracks.as_ref(), active.as_deref())?;
             stats.solver = stats.solver.followed_by(&solution.stats);
             stats.cells = grid.size();
             let grid_rotation = rotation;
@@ -195,8 +201,19 @@ impl PairModel {
             let converged = solution.is_converged();
             let fillet = touches_fillet(&grid, &solution.forces);
             let status = PositionStatus::NotConverged;
-            let settled =
-                Settled { grid, compliance, solution, status, grid_rotation, rotation, no_load, start, stats };
+            let settled = Settled {
+                grid,
+                compliance,
+                solution,
+                cracks,
+                crack_state,
+                status,
+                grid_rotation,
+                rotation,
+                no_load,
+                start,
+                stats,
+            };
             let settled = outcome.insert(settled);
             if !converged {
                 break;
@@ -216,6 +233,20 @@ impl PairModel {
             }
         }
         Ok(outcome)
+    }
+
+    /// Solves the flanks' contact problem, with the faces of cracks in it where they would overlap.
+    fn solve_cells(
+        &self,
+        problem: &ContactProblem<'_>,
+        cracks: Option<&CrackCells>,
+        warm: Option<&[bool]>,
+    ) -> Result<(ContactSolution, Option<CrackState>), FecmError> {
+        let open = solve_contact(self.options.contact.solver, problem, warm)?;
+        match cracks {
+            Some(cracks) => cracks.solve(self, problem, open),
+            None => Ok((open, None)),
+        }
     }
 
     /// Pairs that the deflection can close, the wheel closed by `rotation`, with rows around what is known of their contact (`spans`), else
@@ -258,7 +289,7 @@ impl PairModel {
         settled: &Settled,
         stats: &mut SolveStats,
     ) -> Result<Option<f64>, FecmError> {
-        let Settled { grid, compliance, solution, .. } = settled;
+        let Settled { grid, compliance, solution, cracks, .. } = settled;
         let (gaps, arms) = (grid.gaps(), grid.wheel_arms());
         let active: Vec<bool> = solution.forces.iter().map(|&f| f > 0.0).collect();
         let step = self.options.contact.slope_step;
@@ -266,7 +297,7 @@ impl PairModel {
         for (rotation, sign) in rotations.iter_mut().zip([-1.0, 1.0]) {
             let load = request.torque * (1.0 + sign * step);
             let problem = ContactProblem { compliance: compliance.as_ref(), gap: &gaps, arm: &arms, load };
-            let nearby = solve_contact(self.options.contact.solver, &problem, Some(&active))?;
+            let (nearby, _) = self.solve_cells(&problem, cracks.as_ref(), Some(&active))?;
             *stats = stats.followed_by(&nearby.stats);
             *rotation = nearby.approach;
         }
@@ -334,6 +365,7 @@ impl PairModel {
             stiffness_local_slope_difference: difference,
             pairs,
             patches,
+            crack_faces: settled.crack_contacts(self),
             stats,
         }
     }
@@ -353,6 +385,7 @@ impl PairModel {
             stiffness_local_slope_difference: None,
             pairs: Vec::new(),
             patches: Vec::new(),
+            crack_faces: Vec::new(),
             stats: PositionStats::default(),
         }
     }
@@ -361,6 +394,24 @@ impl PairModel {
     #[must_use]
     pub fn is_solid(&self) -> bool {
         matches!(self.options.face, FaceModel::Solid { .. })
+    }
+}
+
+impl Settled {
+    /// Takes the compliance between all cells (m/N), with the crack faces that press on each other held together.
+    pub(crate) fn take_held_compliance(&mut self) -> Result<Mat<f64>, FecmError> {
+        let mut compliance = std::mem::replace(&mut self.compliance, Mat::new());
+        if let (Some(cracks), Some(state)) = (&self.cracks, &self.crack_state) {
+            cracks.hold(&mut compliance, state)?;
+        }
+        Ok(compliance)
+    }
+
+    fn crack_contacts(&self, model: &PairModel) -> Vec<super::CrackFaceContact> {
+        match (&self.cracks, &self.crack_state) {
+            (Some(cracks), Some(state)) => cracks.contacts(model.crack_faces(), state),
+            _ => Vec::new(),
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Results of a static analysis, in SI units.
 
+use super::crack_contact::CrackFaceContact;
 use crate::lcp::SolveStats;
 
 /// One tooth pair at one position.
@@ -119,6 +120,8 @@ pub struct PositionResult {
     pub pairs: Vec<PairState>,
     /// Pressures, if kept.
     pub patches: Vec<PressurePatch>,
+    /// Cracks whose faces press on each other.
+    pub crack_faces: Vec<CrackFaceContact>,
     /// How it was solved.
     pub stats: PositionStats,
 }

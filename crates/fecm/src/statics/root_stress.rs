@@ -77,9 +77,13 @@ impl PairModel {
         let member = |index: usize| {
             let body = &self.bodies[index];
             let cracked: Vec<i32> = body.damaged_teeth().collect();
-            let reading = |sector: &ToothSector| RootReading::new(self, body, sector);
-            let healthy = reading(body.healthy_sector());
-            MemberReading { healthy, damaged: cracked.into_iter().map(|t| (t, reading(body.sector(t)))).collect() }
+            let reading = |sector: &ToothSector, openings| RootReading::new(self, body, sector, openings);
+            let healthy = reading(body.healthy_sector(), None);
+            let of_tooth = |tooth: i32| {
+                let openings = self.crack_on(index, tooth).map(|crack| &crack.openings[..]);
+                (tooth, reading(body.sector(tooth), openings))
+            };
+            MemberReading { healthy, damaged: cracked.into_iter().map(of_tooth).collect() }
         };
         let (pinion, wheel) = rayon::join(|| member(0), || member(1));
         RootStressReader { model: self, members: [pinion, wheel] }
@@ -119,10 +123,9 @@ impl RootStressReader<'_> {
 }
 
 impl RootReading {
-    fn new(model: &PairModel, body: &GearBody, sector: &ToothSector) -> Self {
+    fn new(model: &PairModel, body: &GearBody, sector: &ToothSector, openings: Option<&[Vec<Functional>]>) -> Self {
         let loaded = body.side;
-        let other = if loaded == FlankSide::Upper { FlankSide::Lower } else { FlankSide::Upper };
-        let sides = [loaded, other].map(|side| root_points(&sector.shape, side));
+        let sides = [loaded, loaded.other()].map(|side| root_points(&sector.shape, side));
         let faces = face_positions(model, body);
         let functionals = body.families.iter().map(|family| {
             let points = sides.iter().flatten();
@@ -133,7 +136,7 @@ impl RootReading {
             points.flat_map(along).collect()
         });
         let functionals: Vec<Vec<_>> = functionals.collect();
-        let reading = SectorReading::new(body, sector, &functionals);
+        let reading = SectorReading::new(body, sector, &functionals, openings);
         let place = |(point, along, parted): &(SurfacePoint, f64, bool)| RootPoint {
             tangent_angle: point.tangent.x.abs().min(1.0).acos(),
             along: *along,

@@ -75,6 +75,25 @@ impl Solution {
     }
 }
 
+impl Solution {
+    /// Displacement by a functional taken as a load: `K^-1 w`, to be read with [`Self::read`].
+    pub fn response(&self, load: &Functional) -> Mat<f64> {
+        let mut moved = Mat::<f64>::zeros(self.moved.nrows(), 1);
+        for &(node, dof, weight) in load.terms() {
+            if let Some(row) = self.condensed.interior_row(node, dof) {
+                moved[(row, 0)] += weight;
+            }
+        }
+        self.condensed.solve_interior(&mut moved);
+        moved
+    }
+
+    /// Value of a functional on a displacement.
+    pub fn read(&self, moved: &Mat<f64>, functional: &Functional) -> f64 {
+        functional.value(|node, dof| self.condensed.interior_row(node, dof).map_or(0.0, |row| moved[(row, 0)]))
+    }
+}
+
 fn pieces(order: usize, edge: &Edge) -> Vec<Vec<u32>> {
     edge.nodes().windows(order + 1).step_by(order).map(<[u32]>::to_vec).collect()
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fecm::statics::PositionResult;
+use fecm::statics::{PairModel, PositionResult};
 use serde::Serialize;
 
 use super::stress::Stresses;
@@ -26,8 +26,18 @@ pub struct Effect {
     pub stiffness_decrease_max_percent: f64,
     /// Mesh cycle of it.
     pub stiffness_decrease_max_at: f64,
+    /// Length of its longest crack along the path (mm).
+    pub crack_length_mm: Option<f64>,
     /// Largest stress-intensity factor `K_I` of its cracks (MPa sqrt(m)).
     pub k_one_max_mpa_sqrt_m: Option<f64>,
+    /// Largest magnitude of `K_II` (MPa sqrt(m)).
+    pub k_two_max_mpa_sqrt_m: Option<f64>,
+    /// Largest force between the faces of a crack that closes (N).
+    pub crack_face_force_max_n: Option<f64>,
+    /// Largest tension at the roots of the pinion's teeth (MPa), if asked for.
+    pub pinion_root_tension_max_mpa: Option<f64>,
+    /// Largest tension at the roots of the gear's teeth (MPa), if asked for.
+    pub gear_root_tension_max_mpa: Option<f64>,
 }
 
 /// The 1 % rule of the dissertation.
@@ -39,7 +49,7 @@ pub fn effect(
     label: &str,
     healthy: &[PositionResult],
     damaged: &[PositionResult],
-    stresses: &Stresses,
+    (model, stresses): (&PairModel, &Stresses),
     origin: f64,
 ) -> Effect {
     let pairs = || healthy.iter().zip(damaged).filter(|(h, d)| h.status.is_usable() && d.status.is_usable());
@@ -57,6 +67,7 @@ pub fn effect(
         [first, second, ..] => second.mesh_cycle - first.mesh_cycle,
         _ => 0.0,
     };
+    let root_tension = |member| stresses.largest_root(damaged, member, 0, origin).map(|root| root.stress_mpa);
     let affected = pairs().filter(|(h, d)| increase(h, d).is_some_and(|i| i > AFFECTED)).count();
     Effect {
         label: label.into(),
@@ -67,8 +78,23 @@ pub fn effect(
         affected_mesh_cycles: affected as f64 * step,
         stiffness_decrease_max_percent: 100.0 * stiffness_decrease.0,
         stiffness_decrease_max_at: stiffness_decrease.1,
+        crack_length_mm: longest_crack(model),
         k_one_max_mpa_sqrt_m: stresses.largest_k_one(),
+        k_two_max_mpa_sqrt_m: stresses.largest_k_two(),
+        crack_face_force_max_n: stresses.largest_face_force(),
+        pinion_root_tension_max_mpa: root_tension(0),
+        gear_root_tension_max_mpa: root_tension(1),
     }
+}
+
+/// Length of the longest crack of a pair (mm).
+fn longest_crack(model: &PairModel) -> Option<f64> {
+    let of_body = |body: &fecm::body::GearBody| -> Option<f64> {
+        let cracks =
+            body.damaged_teeth().filter_map(|tooth| Some(body.sector(tooth).shape.crack.as_ref()?.length * 1e3));
+        cracks.max_by(f64::total_cmp)
+    };
+    model.bodies().iter().filter_map(|body| of_body(body)).max_by(f64::total_cmp)
 }
 
 /// Writes the table.

@@ -1,4 +1,4 @@
-//! Root stresses and stress-intensity factors of a series: columns of its table, a table along crack fronts, extremes.
+//! Root stresses, stress-intensity factors and forces between crack faces of a series: columns of its table, a table along crack fronts, extremes.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -13,6 +13,8 @@ pub struct Stresses {
     pub roots: Vec<Vec<RootStress>>,
     /// Crack tips; empty without cracks.
     pub tips: Vec<Vec<CrackTip>>,
+    /// Member, tooth and force (N) of the cracks whose faces press on each other, by position.
+    pub faces: Vec<Vec<(usize, i32, f64)>>,
 }
 
 /// Largest root stress of a gear.
@@ -44,7 +46,10 @@ impl Stresses {
         let roots = if roots { model.root_stress_reader().read_all(series)? } else { Vec::new() };
         let tips = model.crack_tip_reader();
         let tips = if tips.is_empty() { Vec::new() } else { tips.read_all(series)? };
-        Ok(Self { roots, tips })
+        let of = |position: &PositionResult| {
+            position.crack_faces.iter().map(|faces| (faces.member, faces.tooth, faces.total_force())).collect()
+        };
+        Ok(Self { roots, tips, faces: series.iter().map(of).collect() })
     }
 
     /// Largest tension (0) or compression (1) at the roots of the pinion (0) or gear (1) over the positions; `origin` is added to mesh cycles.
@@ -77,6 +82,18 @@ impl Stresses {
         self.tips.iter().flatten().map(|tip| tip.k_one * MEGA).max_by(f64::total_cmp)
     }
 
+    /// Largest magnitude of `K_II` over positions and along the fronts (MPa sqrt(m)).
+    #[must_use]
+    pub fn largest_k_two(&self) -> Option<f64> {
+        self.tips.iter().flatten().map(|tip| tip.k_two.abs() * MEGA).max_by(f64::total_cmp)
+    }
+
+    /// Largest force between the faces of a crack (N), `None` if none close.
+    #[must_use]
+    pub fn largest_face_force(&self) -> Option<f64> {
+        self.faces.iter().flatten().map(|(_, _, force)| *force).max_by(f64::total_cmp)
+    }
+
     /// Largest `K_I` along the fronts at a position (MPa sqrt(m)).
     #[must_use]
     pub fn k_one(&self, position: usize) -> Option<f64> {
@@ -95,6 +112,11 @@ impl Stresses {
         self.tips.iter().flatten().map(|tip| (tip.member, tip.tooth)).collect()
     }
 
+    /// Teeth with cracks whose faces press on each other somewhere.
+    fn closing(&self) -> BTreeSet<(usize, i32)> {
+        self.faces.iter().flatten().map(|&(member, tooth, _)| (member, tooth)).collect()
+    }
+
     /// Columns for tooth pairs: names.
     #[must_use]
     pub fn header(&self, pairs: &BTreeSet<i32>) -> Vec<String> {
@@ -109,6 +131,9 @@ impl Stresses {
         for (member, tooth) in self.cracked() {
             let gear = GEARS[member];
             names.extend(["one", "two"].map(|mode| format!("{gear}_tooth_{tooth}_k_{mode}_mpa_sqrt_m")));
+        }
+        for (member, tooth) in self.closing() {
+            names.push(format!("{}_tooth_{tooth}_crack_face_force_n", GEARS[member]));
         }
         names
     }
@@ -131,6 +156,10 @@ impl Stresses {
             let own = front.filter(|tip| (tip.member, tip.tooth) == crack);
             let most = own.max_by(|a, b| a.k_one.total_cmp(&b.k_one));
             values.extend(most.map_or([0.0; 2], |tip| [tip.k_one * MEGA, tip.k_two * MEGA]));
+        }
+        for crack in self.closing() {
+            let own = self.faces.get(position).into_iter().flatten().filter(|face| (face.0, face.1) == crack);
+            values.push(own.map(|face| face.2).sum());
         }
         values
     }

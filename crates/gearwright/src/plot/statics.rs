@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use fecm::statics::{PairState, PositionResult};
 use gear_geom::{GearPair, Member};
 
+use crate::output::damage::Effect;
 use crate::output::stress::Stresses;
 
 use super::{COLOURS, Chart, FlankMap, Line, Pattern};
@@ -135,6 +136,52 @@ pub fn crack_opening(title: &str, series: &[(&str, &[PositionResult], &Stresses)
         from_zero: true,
         logarithmic: false,
     }
+}
+
+/// Largest stress-intensity factors over the length of the longest crack; `None` unless there is a sweep of lengths.
+#[must_use]
+pub fn crack_growth(title: &str, effects: &[Effect]) -> Option<Chart> {
+    let modes: [(&str, fn(&Effect) -> Option<f64>); 2] =
+        [("K_I", |effect| effect.k_one_max_mpa_sqrt_m), ("|K_II|", |effect| effect.k_two_max_mpa_sqrt_m)];
+    let lines = modes.iter().enumerate().map(|(index, (name, value))| {
+        let points = by_length(effects, value);
+        line(name, index, [Pattern::Solid, Pattern::Dashed][index], points)
+    });
+    growth(title, "Largest stress-intensity factor (MPa √m)", lines.collect())
+}
+
+/// Largest tension at the roots of both gears over the length of the longest crack, from that of the healthy pair (MPa) on; `None` unless there is a sweep of
+/// lengths and root stresses were asked for.
+#[must_use]
+pub fn root_tension_growth(title: &str, healthy: [Option<f64>; 2], effects: &[Effect]) -> Option<Chart> {
+    let gears: [(&str, fn(&Effect) -> Option<f64>); 2] =
+        [("pinion", |effect| effect.pinion_root_tension_max_mpa), ("gear", |effect| effect.gear_root_tension_max_mpa)];
+    let lines = gears.iter().zip(healthy).enumerate().map(|(index, ((name, value), healthy))| {
+        let start = healthy.map(|stress| (0.0, stress)).into_iter();
+        let points = start.chain(by_length(effects, value)).collect();
+        line(name, index, [Pattern::Solid, Pattern::Dashed][index], points)
+    });
+    growth(title, "Largest tension at the roots (MPa)", lines.collect())
+}
+
+/// A quantity over the length of the longest crack (mm).
+fn by_length(effects: &[Effect], value: &fn(&Effect) -> Option<f64>) -> Vec<(f64, f64)> {
+    effects.iter().filter_map(|effect| effect.crack_length_mm.zip(value(effect))).collect()
+}
+
+fn growth(title: &str, y_label: &str, lines: Vec<Line>) -> Option<Chart> {
+    let is_sweep = |line: &Line| {
+        let mut lengths = line.points.iter().map(|point| point.0).filter(|&length| length > 0.0);
+        lengths.next().is_some_and(|first| lengths.any(|length| length != first))
+    };
+    lines.iter().any(is_sweep).then(|| Chart {
+        title: title.into(),
+        x_label: "Length of the crack (mm)".into(),
+        y_label: y_label.into(),
+        lines,
+        from_zero: true,
+        logarithmic: false,
+    })
 }
 
 /// Tension at the roots of both teeth of the tooth pair that has the most positions.

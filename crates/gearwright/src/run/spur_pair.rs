@@ -77,7 +77,7 @@ pub fn run(case: &SpurPairCase, target: &Path, observer: &dyn RunObserver) -> an
     let started = Instant::now();
     let results = summary::results(series, &stresses, case.inputs.analysis.mesh_cycle_origin);
     write_tables(case, &folder, series, &stresses, map.as_ref())?;
-    let effects = write_damage(case, &folder, series, &damaged)?;
+    let effects = write_damage(case, &folder, (series, &stresses), &damaged)?;
     if case.inputs.output.vtu {
         write_grids(case, &folder, &model, series)?;
     }
@@ -150,13 +150,14 @@ impl Damaged {
 fn write_damage(
     case: &SpurPairCase,
     folder: &ResultsFolder,
-    healthy: &[PositionResult],
+    (healthy, sound): (&[PositionResult], &Stresses),
     damaged: &[Damaged],
 ) -> anyhow::Result<Vec<damage::Effect>> {
     let origin = case.inputs.analysis.mesh_cycle_origin;
     let solved = || damaged.iter().filter_map(|d| d.series.results.first().map(|series| (d, series.as_slice())));
-    let effects: Vec<damage::Effect> =
-        solved().map(|(d, series)| damage::effect(&d.label, healthy, series, &d.stresses, origin)).collect();
+    let effects: Vec<damage::Effect> = solved()
+        .map(|(d, series)| damage::effect(&d.label, healthy, series, (&d.model, &d.stresses), origin))
+        .collect();
     let Some((worst, worst_series)) = solved().next_back() else { return Ok(effects) };
     damage::table(&folder.file("damage.csv"), &effects)?;
     for (index, (d, series)) in solved().enumerate() {
@@ -192,6 +193,13 @@ fn write_damage(
             .collect();
         if !factors.is_empty() {
             save(figures::crack_opening(title, &factors, origin), "damage_stress_intensity")?;
+        }
+        if let Some(chart) = figures::crack_growth(title, &effects) {
+            save(chart, "damage_stress_intensity_by_length")?;
+        }
+        let largest = |member| sound.largest_root(healthy, member, 0, origin).map(|root| root.stress_mpa);
+        if let Some(chart) = figures::root_tension_growth(title, [0, 1].map(largest), &effects) {
+            save(chart, "damage_root_stress_by_length")?;
         }
         let heading = format!("Largest pressure on the pinion flank (MPa), {}", worst.label);
         let symmetric = worst.model.stats().symmetric;

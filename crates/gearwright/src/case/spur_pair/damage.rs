@@ -10,8 +10,8 @@ use nalgebra::Vector2;
 
 use super::resolve::read_deviation;
 use super::schema::{
-    BrokenCorner, Crack, Damage, FaceEnd, HeightAlong, LandmarkName, Member, Model, Pit as PitKeys, SpurPair, Values,
-    Wear,
+    BrokenCorner, Crack, CrackSide, Damage, FaceEnd, HeightAlong, LandmarkName, Member, Model, Pit as PitKeys,
+    SpurPair, Values, Wear,
 };
 use crate::case::document::Node;
 use crate::case::fault::Fault;
@@ -104,8 +104,12 @@ fn severity(
         let solid = inputs.analysis.model == Model::Solid;
         let made = match (&keys.crack, &keys.pit, &keys.wear, &keys.broken_corner) {
             (Some(crack), None, None, None) => {
-                // the loaded flank's fillet opens; on the other side the faces would press on each other
-                let made = root_crack(crack, pair.working_side(member), index, &mut fault);
+                let loaded = pair.working_side(member);
+                let side = match crack.side {
+                    CrackSide::Drive => loaded,
+                    CrackSide::Coast => loaded.other(),
+                };
+                let made = root_crack(crack, side, index, &mut fault);
                 // the coarsest mesh tells whether the crack stays in the tooth
                 let density = fecm::MeshDensity { order: 1, density: 1.0 };
                 if let Some(Err(error)) = made.map(|crack| SectorMesh::with_crack(gear, &density, Some(&crack), "gear"))

@@ -292,6 +292,7 @@ fn options(inputs: &SpurPair, document: &Node, faults: &mut Vec<Fault>) -> PairM
             matching_depth: numerics.matching_depth_modules,
             edge_correction: numerics.edge_correction,
             slope_step: 0.01 * numerics.slope_step_percent,
+            crack_face_contact: numerics.crack_face_contact,
             solver: match numerics.solver {
                 Solver::ActiveSet => SolverKind::ActiveSet,
                 Solver::Lemke => SolverKind::Lemke,

@@ -396,6 +396,10 @@ pub struct Crack {
     /// Length (mm); a number, or a list for a sweep.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length_mm: Option<Values>,
+    /// Flank at whose fillet it starts: "drive" carries the load, and the crack opens; under "coast" the crack closes and its faces press on each
+    /// other.
+    #[serde(default)]
+    pub side: CrackSide,
     /// Angle between the fillet's tangent at the start and the tooth's centre line (degrees; ISO 6336's critical section has 30); default:
     /// the middle of the fillet's turn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -405,6 +409,17 @@ pub struct Crack {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 120.0))]
     pub direction_deg: Option<f64>,
+}
+
+/// Side of a tooth at which a crack starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum CrackSide {
+    /// The loaded flank.
+    #[default]
+    Drive,
+    /// The other flank.
+    Coast,
 }
 
 /// A pit: an ellipse or a polygon. Positions along the profile are roll distances, measured along the line of action.
@@ -539,6 +554,8 @@ pub struct Numerics {
     /// Change of torque either way for the local stiffness by differences (percent). Small steps see the stair of single cells, 10 the slope.
     #[schemars(range(min = 0.01, max = 30.0))]
     pub slope_step_percent: f64,
+    /// Faces of a crack that close press on each other; otherwise they pass through each other freely.
+    pub crack_face_contact: bool,
     /// Contact solver: "active-set" (fast) or "lemke" (reference).
     pub solver: Solver,
 }
@@ -563,6 +580,7 @@ impl Numerics {
             matching_depth_modules: defaults.contact.matching_depth,
             edge_correction: defaults.contact.edge_correction,
             slope_step_percent: 100.0 * defaults.contact.slope_step,
+            crack_face_contact: defaults.contact.crack_face_contact,
             solver: Solver::ActiveSet,
         }
     }
