@@ -8,6 +8,7 @@ mod dissertation;
 mod docs;
 mod reproduce;
 mod scene_costs;
+mod stability;
 mod work_precision;
 
 #[derive(Parser)]
@@ -46,6 +47,8 @@ enum Command {
     ReproduceThesisFigures(reproduce::Options),
     /// What each kind of scene leaves out and what that saves; writes docs/reports/scene-costs.md.
     SceneCosts,
+    /// Stiff and extreme cases of all crates; writes docs/reports/stability.md and fails if one of them does.
+    Stability,
     /// Error against run time; writes docs/reports/work-precision-STUDY.md and plots.
     WorkPrecision {
         /// What to study.
@@ -62,6 +65,7 @@ fn main() -> anyhow::Result<()> {
         Command::Dissertation { chapter } => dissertation::run(chapter),
         Command::ReproduceThesisFigures(options) => reproduce::run(&options),
         Command::SceneCosts => scene_costs::run(),
+        Command::Stability => stability::run(),
         Command::WorkPrecision { study } => work_precision::run(study),
     }
 }
