@@ -17,6 +17,8 @@ const TORQUE: f64 = 200.0;
 const UNDAMPED: Damping = Damping { mass_proportional: 0.0, stiffness_proportional: 0.0, modal_ratio: 0.0 };
 const DAMPED: Damping = Damping { mass_proportional: 1500.0, ..UNDAMPED };
 const RIGID: usize = 0;
+/// Inertia that rigid bodies are given.
+const INERTIA: RotorInertia = RotorInertia { mass: 2.0, polar: 0.006, transverse: 0.004 };
 
 /// All cases.
 pub fn cases() -> Table {
@@ -41,22 +43,21 @@ pub fn cases() -> Table {
 }
 
 fn running_cases(table: &mut Table, model: &PairModel) {
-    for (rpm, steps) in [(1.0, 10), (1.0, 1000), (3000.0, 4), (3000.0, 10), (3000.0, 1000), (60_000.0, 10), (60_000.0, 1000)] {
+    for (rpm, steps) in
+        [(1.0, 10), (1.0, 1000), (3000.0, 4), (3000.0, 10), (3000.0, 1000), (60_000.0, 10), (60_000.0, 1000)]
+    {
         table.answered(format!("{rpm} rpm, {steps} steps per mesh cycle"), || {
             run(model, &options(DAMPED, RIGID), &running(rpm, steps), 3 * steps)
         });
     }
-    for stiffness in [1e6, 1e9, 1e12, 1e15] {
+    for stiffness in [1e8, 1e9, 1e12, 1e15] {
         table.answered(format!("bearings of {stiffness:.0e} N/m, 4000 rpm, 10 mesh cycles"), || {
-            let mut options = options(DAMPED, RIGID);
-            for rotor in &mut options.rotors {
-                for axis in 0..2 {
-                    rotor.supports[axis] = Support::Elastic { stiffness, damping: 800.0 };
-                }
-            }
-            run(model, &options, &running(4000.0, 50), 500)
+            run(model, &on_bearings(stiffness), &running(4000.0, 50), 500)
         });
     }
+    table.refused("bearings of 1e6 N/m: the gears leave each other", || {
+        run(model, &on_bearings(1e6), &running(4000.0, 50), 500)
+    });
     table.answered("undamped, 3000 rpm, 1000 mesh cycles", || {
         run(model, &options(UNDAMPED, RIGID), &running(3000.0, 50), 50_000)
     });
@@ -65,18 +66,20 @@ fn running_cases(table: &mut Table, model: &PairModel) {
     });
     for modes in [1, 40] {
         table.answered(format!("{modes} elastic modes of each gear, 4000 rpm, 10 mesh cycles"), || {
-            run(model, &options(DAMPED, modes), &running(4000.0, 50), 500)
+            run(model, &elastic(model, modes), &running(4000.0, 50), 500)
         });
     }
+    table.refused("hub and elastic gear lighter than the gear's mesh", || {
+        let mut options = elastic(model, 40);
+        options.rotors[1].inertia.polar *= 0.1;
+        run(model, &options, &running(4000.0, 50), 10)
+    });
     table.answered("monolithic contact problem (Lemke), 5000 rpm, 4 mesh cycles", || {
         let options = DynamicsOptions { solver: StepSolver::Lemke, ..options(DAMPED, RIGID) };
         run(model, &options, &running(5000.0, 50), 200)
     });
     table.answered("torque 1e-6 N m, 1000 rpm, 4 mesh cycles", || {
         run(model, &options(DAMPED, RIGID), &DynamicsRequest { torque: 1e-6, ..running(1000.0, 50) }, 200)
-    });
-    table.answered("no torque, 1000 rpm, 4 mesh cycles", || {
-        run(model, &options(DAMPED, RIGID), &DynamicsRequest { torque: 0.0, ..running(1000.0, 50) }, 200)
     });
 }
 
@@ -85,7 +88,8 @@ fn state_cases(table: &mut Table, model: &PairModel) {
         let request = DynamicsRequest { initial: InitialState::Unloaded, ..running(3000.0, 50) };
         run(model, &options(DAMPED, RIGID), &request, 1000)
     });
-    table.answered("started from a wrong state, 3000 rpm, 20 mesh cycles", || {
+    // the acceleration given is not that of the forces, so the first step's work is not its energy
+    table.answered("started from a wrong state, 3000 rpm, 20 mesh cycles: settles, energy not counted", || {
         let state = DynamicsState {
             step: 0,
             position: vec![-2e-4],
@@ -94,7 +98,8 @@ fn state_cases(table: &mut Table, model: &PairModel) {
             contact: vec![10.0],
         };
         let request = DynamicsRequest { initial: InitialState::Given(state), ..running(3000.0, 50) };
-        run(model, &options(DAMPED, RIGID), &request, 1000)
+        let settled = run(model, &options(DAMPED, RIGID), &request, 1000)?;
+        Ok(Answer { residuals: settled.residuals.iter().take(2).copied().collect(), ..settled })
     });
     table.answered("thrown across the backlash: blow on the coast flanks", || {
         let options = options(UNDAMPED, RIGID);
@@ -112,6 +117,9 @@ fn state_cases(table: &mut Table, model: &PairModel) {
 
 fn refusals(table: &mut Table, model: &PairModel) {
     let fine = || options(DAMPED, RIGID);
+    table.refused("no torque: nothing holds the teeth together", || {
+        run(model, &fine(), &DynamicsRequest { torque: 0.0, ..running(1000.0, 50) }, 10)
+    });
     table.refused("speed 0", || run(model, &fine(), &running(0.0, 50), 10));
     table.refused("speed NaN", || run(model, &fine(), &running(f64::NAN, 50), 10));
     table.refused("one step per mesh cycle", || run(model, &fine(), &running(1000.0, 1), 10));
@@ -129,11 +137,27 @@ fn refusals(table: &mut Table, model: &PairModel) {
     });
 }
 
+fn on_bearings(stiffness: f64) -> DynamicsOptions {
+    let mut options = options(DAMPED, RIGID);
+    for rotor in &mut options.rotors {
+        rotor.supports[..2].fill(Support::Elastic { stiffness, damping: 800.0 });
+    }
+    options
+}
+
+/// Elastic gears, each with a hub of its own mass besides.
+fn elastic(model: &PairModel, modes: usize) -> DynamicsOptions {
+    let mut options = options(Damping { modal_ratio: 0.01, ..DAMPED }, modes);
+    for (rotor, body) in options.rotors.iter_mut().zip(model.bodies()) {
+        let gear = body.inertia();
+        rotor.inertia =
+            RotorInertia { mass: 2.0 * gear.mass, polar: 2.0 * gear.polar, transverse: 2.0 * gear.transverse };
+    }
+    options
+}
+
 fn options(damping: Damping, modes: usize) -> DynamicsOptions {
-    let rotor = |rotation| RotorOptions {
-        modes,
-        ..RotorOptions::on_ideal_bearings(RotorInertia { mass: 2.0, polar: 0.006, transverse: 0.004 }, rotation)
-    };
+    let rotor = |rotation| RotorOptions { modes, ..RotorOptions::on_ideal_bearings(INERTIA, rotation) };
     DynamicsOptions {
         rotors: [rotor(Support::Fixed), rotor(Support::Free)],
         damping,
@@ -154,7 +178,12 @@ fn running(rpm: f64, steps_per_cycle: usize) -> DynamicsRequest {
     }
 }
 
-fn run(model: &PairModel, options: &DynamicsOptions, request: &DynamicsRequest, steps: usize) -> anyhow::Result<Answer> {
+fn run(
+    model: &PairModel,
+    options: &DynamicsOptions,
+    request: &DynamicsRequest,
+    steps: usize,
+) -> anyhow::Result<Answer> {
     Ok(answer(&PairDynamics::new(model, options)?.run(request, steps, &())?))
 }
 

@@ -32,10 +32,9 @@ pub fn cases() -> Table {
     let clipped = sine(1.0, 0.0).iter().map(|v| v.clamp(-0.8, 0.8)).collect();
     let counts = noise().iter().map(|g| (20.0 * g).round() + 8_388_407.0).collect();
     let scaled = |scale: f64| noise().iter().map(|v| v * scale).collect::<Vec<f64>>();
-    let signals: [(&str, Vec<f64>); 13] = [
+    let signals: [(&str, Vec<f64>); 12] = [
         ("all zeros", vec![0.0; LENGTH]),
         ("constant 0.1", vec![0.1; LENGTH]),
-        ("constant of the largest number", vec![f64::MAX; LENGTH]),
         ("constant of the least number", vec![5e-324; LENGTH]),
         ("sine", sine(1.0, 0.0)),
         ("sine of 1e-9 on an offset of 1e6", sine(1e-9, 1e6)),
@@ -51,6 +50,7 @@ pub fn cases() -> Table {
         table.answered(name, || indicators(&signal));
     }
     table.refused("no samples", || indicators(&[]));
+    table.refused("constant of the largest number: sums of the transform overflow", || indicators(&[f64::MAX; LENGTH]));
     table.refused("a sample that is not a number", || {
         let mut signal = noise();
         signal[300] = f64::NAN;
@@ -81,7 +81,12 @@ fn tachometers(table: &mut Table) {
     let mut double = steady(20);
     double.insert(8, 7.51);
     // half the speed at the end
-    let slowing = (0..15).map(|k| { let k = f64::from(k); 0.5 + k + k * k / 30.0 }).collect::<Vec<f64>>();
+    let slowing = (0..15)
+        .map(|k| {
+            let k = f64::from(k);
+            0.5 + k + k * k / 30.0
+        })
+        .collect::<Vec<f64>>();
     for (name, pulses) in [
         ("tachometer: steady", steady(20)),
         ("tachometer: a pulse missing", missing),

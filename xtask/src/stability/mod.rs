@@ -201,7 +201,11 @@ mod tests {
 
     fn outcome(expect_answer: bool, compute: impl FnOnce() -> anyhow::Result<Answer>) -> usize {
         let mut table = Table::new("t", "", &[("r", 1e-9)]);
-        if expect_answer { table.answered("c", compute) } else { table.refused("c", compute) }
+        if expect_answer {
+            table.answered("c", compute)
+        } else {
+            table.refused("c", compute)
+        }
         table.failures()
     }
 

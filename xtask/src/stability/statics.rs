@@ -77,9 +77,7 @@ fn add(table: &mut Table, case: impl Into<String>, proportions: Proportions, tor
 
 /// The contact solvers on one scene.
 fn solvers(table: &mut Table) {
-    for (name, solver) in
-        [("Lemke", SolverKind::Lemke), ("active set", SolverKind::ActiveSet)]
-    {
+    for (name, solver) in [("Lemke", SolverKind::Lemke), ("active set", SolverKind::ActiveSet)] {
         table.answered(format!("solver {name}, plane strain"), || {
             let pair = USUAL.pair()?;
             let mut options = options(FaceModel::PlaneStrain);
@@ -150,14 +148,17 @@ fn finite(answer: Answer, results: &[PositionResult]) -> Answer {
 
 /// Solutions, with load or without.
 pub fn answer(results: &[PositionResult], loaded: bool) -> Answer {
-    let worst = |value: fn(&PositionResult) -> f64| results.iter().map(value).fold(0.0_f64, |w, v| if v.is_nan() { v } else { w.max(v) });
+    let worst = |value: fn(&PositionResult) -> f64| {
+        results.iter().map(value).fold(0.0_f64, |w, v| if v.is_nan() { v } else { w.max(v) })
+    };
     let residuals = vec![
         Some(worst(|at| at.stats.torque_residual)),
         Some(worst(|at| at.stats.solver.kkt_violation)),
         Some(worst(|at| at.stats.solver.complementarity)),
     ];
     let usable = results.iter().all(|at| at.status.is_usable());
-    let stiff = results.iter().all(|at| at.stiffness_local_slope.is_some_and(|k| k > 0.0) && at.loaded_pairs().count() > 0);
+    let stiff =
+        results.iter().all(|at| at.stiffness_local_slope.is_some_and(|k| k > 0.0) && at.loaded_pairs().count() > 0);
     let deflected = results.iter().all(|at| at.static_transmission_error - at.no_load_transmission_error > -1e-15);
     finite(Answer::new(statuses(results), residuals), results)
         .with(usable, "not solved")
