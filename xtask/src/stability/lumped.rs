@@ -1,8 +1,8 @@
 //! Lumped parameters: damping, speed, load, stiff supports, grazing, chatter.
 
 use lpm::{
-    Curve, Excitation, GearPair, Input, Method, Model, Options, Response, Sampling, Separation, State, SteadyOptions,
-    Supports,
+    Curve, Excitation, GearPair, Input, Method, Model, Options, Response, Sampling, Separation, ShootingOptions, State,
+    SteadyOptions, Supports,
 };
 
 use super::{Answer, Table};
@@ -124,8 +124,11 @@ fn grazing(excess: f64) -> anyhow::Result<Response> {
     let error = Curve::fourier(20e-6, &[(amplitude, 0.0)])?;
     let excitation = Excitation::new(&Curve::constant(stiffness)?, &error)?;
     let model = Model::new(&GearPair::oscillator(mass, damping, force), &excitation, Supports::Rigid)?;
-    let orbit = model.steady_state(frequency, &model.equilibrium(0.0), &SteadyOptions::default())?;
-    Ok(model.simulate(frequency, &orbit.state, 5, &SAMPLING, &Options::default())?)
+    // the motion that just touches the boundary, not the one beyond it that waiting would find
+    let options = Options::with_tolerance(1e-12);
+    let shooting = ShootingOptions { integration: options, tolerance: 1e-11, ..ShootingOptions::default() };
+    let orbit = model.shoot(frequency, &model.equilibrium(0.0), &shooting)?;
+    Ok(model.simulate(frequency, &orbit.state, 5, &SAMPLING, &options)?)
 }
 
 fn refusals(table: &mut Table) {
