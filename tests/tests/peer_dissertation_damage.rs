@@ -1,5 +1,5 @@
 //! Damaged teeth as the dissertation prints them; ratios to the healthy pair, because its pair is softer than ours. All numbers and their
-//! differences: `cargo xtask dissertation damage`. Pit heights are arc lengths on the flank: `docs/damage.md` says how that was found.
+//! differences: `docs/reports/dissertation.md`. Pit heights are arc lengths on the flank: `docs/damage.md` says how that was found.
 
 use std::path::Path;
 

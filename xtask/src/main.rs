@@ -4,10 +4,11 @@ use clap::{Parser, Subcommand};
 
 mod calculix;
 mod ci;
-mod dissertation;
+mod damage_classifier;
 mod docs;
 mod reproduce;
 mod scene_costs;
+mod stability;
 mod work_precision;
 
 #[derive(Parser)]
@@ -36,16 +37,14 @@ enum Command {
     },
     /// Static transmission error against CalculiX (program `ccx`, Debian package calculix-ccx); writes docs/reports/calculix.md.
     PeerCalculix,
-    /// Printed results of the dissertation against computed ones; writes docs/reports/dissertation-CHAPTER.md.
-    Dissertation {
-        /// What to compare.
-        #[arg(value_enum)]
-        chapter: dissertation::Chapter,
-    },
+    /// Confusion table of the damage classifier (dissertation, section 3.3); writes docs/reports/damage-classifier.md.
+    DamageClassifier,
     /// Figures and tables of the dissertation, computed again from the case files, beside the printed numbers, on one page.
     ReproduceThesisFigures(reproduce::Options),
     /// What each kind of scene leaves out and what that saves; writes docs/reports/scene-costs.md.
     SceneCosts,
+    /// Stiff and extreme cases of all crates; writes docs/reports/stability.md and fails if one of them does.
+    Stability,
     /// Error against run time; writes docs/reports/work-precision-STUDY.md and plots.
     WorkPrecision {
         /// What to study.
@@ -59,9 +58,10 @@ fn main() -> anyhow::Result<()> {
         Command::Ci { full } => ci::run(full),
         Command::Docs { check, no_api } => docs::run(check, !no_api),
         Command::PeerCalculix => calculix::run(),
-        Command::Dissertation { chapter } => dissertation::run(chapter),
+        Command::DamageClassifier => damage_classifier::run(),
         Command::ReproduceThesisFigures(options) => reproduce::run(&options),
         Command::SceneCosts => scene_costs::run(),
+        Command::Stability => stability::run(),
         Command::WorkPrecision { study } => work_precision::run(study),
     }
 }

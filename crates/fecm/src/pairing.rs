@@ -277,8 +277,34 @@ impl Pairing {
             return Some(row.separation);
         }
         let half = 0.5 * self.common_facewidth();
-        let removed = face_samples(half).map(|z| self.material_removed(pair, row, z)).min_by(f64::total_cmp)?;
-        Some(row.separation + removed)
+        let removed = |z: f64| self.material_removed(pair, row, z);
+        let least =
+            face_samples(half).map(removed).chain(self.damage_rims(pair, row).map(removed)).min_by(f64::total_cmp)?;
+        Some(row.separation + least)
+    }
+
+    /// Places along the face where damage at opposite points begins or ends, on the side of less damage: crowned flanks with a pit on their crest
+    /// touch there first.
+    fn damage_rims(&self, pair: i32, row: &OpposedPoints) -> impl Iterator<Item = f64> {
+        const HALVINGS: usize = 24;
+        let rolls = [row.pinion_roll, row.wheel_roll];
+        let depth = move |z: f64| self.damage_depth(pair, rolls, z);
+        let is_damaged = self.surfaces.iter().any(|list| !list.is_empty());
+        let half = 0.5 * self.common_facewidth();
+        let stretches = face_samples(half).zip(face_samples(half).skip(1)).take_while(move |_| is_damaged);
+        stretches.filter_map(move |(one, other)| {
+            let depths = [depth(one), depth(other)];
+            let [mut less, mut more] = if depths[0] < depths[1] { [one, other] } else { [other, one] };
+            let least = depths[0].min(depths[1]);
+            if depths[0].max(depths[1]) <= least {
+                return None;
+            }
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (less + more);
+                *(if depth(middle) > least { &mut more } else { &mut less }) = middle;
+            }
+            Some(less)
+        })
     }
 }
 

@@ -306,6 +306,30 @@ fn extreme_pits() {
     }
 }
 
+/// Crowned flanks with a pit on the crest touch first at the pit's rim: the crown's depth there, no matter where cells lie.
+#[test]
+fn analytic_first_touch_of_a_crown_with_a_pit() {
+    let crown = 30e-6;
+    let crowned = |teeth| {
+        let mut spec = gear(teeth).spec().clone();
+        spec.modification.lead_crown = crown;
+        Gear::new(&spec).unwrap()
+    };
+    let pair = GearPair::new(crowned(25), crowned(31), pair().centre_distance()).unwrap();
+    let model = PairModel::new(&pair, &options(FaceModel::Solid { order: 4 })).unwrap();
+    let half = 0.5 * pair.pinion().facewidth();
+    for width in [3e-3, 5e-3, 7.3e-3] {
+        let damaged = model.with_damage(&[vec![pit(0, ellipse(0.0, pair.pitch_roll(), width, 6e-3))], vec![]]).unwrap();
+        let light = StaticsRequest { torques: vec![1e-3 * TORQUE], ..request(&[0.0]) };
+        let at = &damaged.solve(&light, &()).unwrap().results[0][0];
+        // at the pitch point the rim is half the pit's width from mid-face; wheel and pinion are alike there
+        let exact = 2.0 * crown * (0.5 * width / half).powi(2);
+        let no_load = at.no_load_transmission_error;
+        assert!((no_load / exact - 1.0).abs() < 1e-4, "{width}: {no_load:.4e} {exact:.4e}");
+        assert!(at.static_transmission_error > no_load, "{width}: load opens the teeth");
+    }
+}
+
 #[test]
 fn extreme_several_damages() {
     let model = PairModel::new(&pair(), &options(FaceModel::Solid { order: 4 })).unwrap();

@@ -173,6 +173,16 @@ impl Pit {
         self.shapes.iter().all(PitShape::is_symmetric)
     }
 
+    /// Whether its place, its sizes and its depth are numbers.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        let shape = |shape: &PitShape| match shape {
+            PitShape::Ellipse { centre, size, .. } => centre.iter().chain(size.iter()).all(|v| v.is_finite()),
+            PitShape::Polygon(corners) => corners.iter().flatten().all(|v| v.is_finite()),
+        };
+        self.shapes.iter().all(shape) && self.depth.is_none_or(f64::is_finite)
+    }
+
     /// Part of a flank's area that the pit takes, the flank measured in roll distance from `rolls[0]` to `rolls[1]` over a face of `width`
     /// (m); by midpoint sampling, relative error below 1e-3 for pits of a percent or more.
     #[must_use]

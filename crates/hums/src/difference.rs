@@ -29,7 +29,7 @@
 //! and equals a brute-force Fourier sum.
 
 use crate::error::{HumsError, Result, require_finite, require_len};
-use crate::spectrum::Spectrum;
+use crate::spectrum::{Spectrum, require_in_range};
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
 use std::sync::Arc;
@@ -252,6 +252,7 @@ impl Splitter {
         let bins = out.spectrum.room(n);
         let outcome = self.forward.process_with_scratch(&mut out.residual, bins, scratch);
         debug_assert!(outcome.is_ok());
+        require_in_range("spectrum of the average", bins)?;
         kept.clear();
         kept.extend_from_slice(bins);
         self.without(&self.residual_orders, kept, scratch, &mut out.residual);

@@ -30,7 +30,7 @@ pub enum Window {
 }
 
 impl Window {
-    /// Samples of the window.
+    /// Samples of the window. A single sample has weight 1: one period of these windows is their zero.
     #[must_use]
     pub fn samples(self, n: usize) -> Vec<f64> {
         let terms: &[f64] = match self {
@@ -38,6 +38,9 @@ impl Window {
             Self::Hann => &[0.5, 0.5],
             Self::FlatTop => &[0.215_578_95, 0.416_631_58, 0.277_263_158, 0.083_578_947, 0.006_947_368],
         };
+        if n == 1 {
+            return vec![1.0];
+        }
         (0..n)
             .map(|i| {
                 let phase = 2.0 * PI * i as f64 / n as f64;
@@ -54,6 +57,11 @@ impl Window {
     }
 }
 
+/// Refuses a transform that overflowed.
+pub(crate) fn require_in_range(what: &'static str, bins: &[Complex<f64>]) -> Result<()> {
+    if bins.iter().all(|bin| bin.is_finite()) { Ok(()) } else { Err(HumsError::OutOfRange { what }) }
+}
+
 /// One-sided spectrum of a real signal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spectrum {
@@ -66,7 +74,7 @@ impl Spectrum {
     /// Transforms a signal.
     ///
     /// # Errors
-    /// Empty signal or non-finite sample.
+    /// Empty signal or non-finite sample; [`HumsError::OutOfRange`] if the transform overflows.
     pub fn of(signal: &[f64], window: Window) -> Result<Self> {
         require_len("spectrum", signal, 1)?;
         require_finite("spectrum", signal)?;
@@ -74,6 +82,7 @@ impl Spectrum {
         let weights = window.samples(n);
         let mut input: Vec<f64> = signal.iter().zip(&weights).map(|(x, w)| x * w).collect();
         let bins = forward(&mut input);
+        require_in_range("spectrum", &bins)?;
         Ok(Self { bins, samples: n, window_sum: weights.iter().sum() })
     }
 

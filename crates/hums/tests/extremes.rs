@@ -57,6 +57,11 @@ fn extreme_constant_signals_are_constant_at_any_size() {
             assert!(quality.constant && quality.clipped.is_empty());
         }
     }
+    // sums of the transform overflow
+    let largest = [f64::MAX; 1000];
+    assert!(matches!(Spectrum::of(&largest, Window::Hann), Err(HumsError::OutOfRange { .. })));
+    let analyzer = GearAnalyzer::new(1000, &RemovalRule::sidebands(27, 1)).unwrap();
+    assert!(matches!(analyzer.analyze(&largest), Err(HumsError::OutOfRange { .. })));
     // NA4 of constant residuals has no reference.
     let mut na4 = QuasiKurtosis::new(Memory::Running).unwrap();
     assert!(matches!(na4.update(&[0.1; 50]), Err(HumsError::Undefined { .. })));
@@ -69,7 +74,9 @@ fn extreme_one_and_two_samples() {
     assert_eq!(value(&table, Indicator::Rms), &Ok(3.0));
     assert!(matches!(value(&table, Indicator::EnergyOperator), Err(HumsError::TooShort { needed: 3, found: 1, .. })));
     close(basic::kurtosis(&[1.0, 2.0]).unwrap(), 1.0, 1e-15);
-    assert_eq!(Spectrum::of(&[3.0], Window::Rectangular).unwrap().amplitudes(), [3.0]);
+    for window in [Window::Rectangular, Window::Hann, Window::FlatTop] {
+        assert_eq!(Spectrum::of(&[3.0], window).unwrap().amplitudes(), [3.0]);
+    }
     assert_eq!(envelope(&[3.0]).unwrap(), [3.0]);
     assert!(split(&[1.0], &RemovalRule::sidebands(1, 0)).is_err());
     assert!(GearAnalyzer::new(2, &RemovalRule::sidebands(1, 1)).is_ok_and(|a| {

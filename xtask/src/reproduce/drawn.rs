@@ -144,16 +144,32 @@ pub struct Drawn {
     pub tables: Vec<Table>,
     /// Values by their keys in the data file of printed numbers.
     pub values: BTreeMap<String, f64>,
+    /// What was found of what is said in words, by the same keys.
+    pub claims: BTreeMap<String, Found>,
     /// What a reader should know: choices, shifts of origin, what is left out.
     pub notes: Vec<String>,
     /// Wall time (s).
     pub seconds: f64,
 }
 
+/// What a computation finds of something said in words.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Found {
+    /// Whether it holds.
+    pub holds: bool,
+    /// The numbers behind.
+    pub found: String,
+}
+
 impl Drawn {
     /// Adds a value.
     pub fn value(&mut self, key: impl Into<String>, value: f64) {
         self.values.insert(key.into(), value);
+    }
+
+    /// Adds what was found of something said in words.
+    pub fn claim(&mut self, key: impl Into<String>, holds: bool, found: impl Into<String>) {
+        self.claims.insert(key.into(), Found { holds, found: found.into() });
     }
 
     /// Adds a note.
@@ -171,6 +187,8 @@ pub struct Saved {
     pub tables: Vec<Table>,
     /// Values by key.
     pub values: BTreeMap<String, f64>,
+    /// What was found of what is said in words.
+    pub claims: BTreeMap<String, Found>,
     /// Notes.
     pub notes: Vec<String>,
     /// Wall time (s).

@@ -119,7 +119,9 @@ fn row(page: &mut String, one: &Compared, linked: bool) -> anyhow::Result<()> {
     let number = one.number;
     let (class, verdict) = match &one.verdict {
         Verdict::Pass => ("pass", "pass".to_owned()),
-        Verdict::Differs => ("differs", "differs".to_owned()),
+        Verdict::Differs => {
+            ("differs", number.note.as_ref().map_or("differs".to_owned(), |note| format!("differs: {note}")))
+        }
         Verdict::NotComparable(reason) => ("none", format!("not comparable: {reason}")),
     };
     let place = escaped(&number.place);
@@ -158,6 +160,23 @@ fn figure(page: &mut String, folder: &Path, done: &Done, printed: &Printed) -> a
         page.push_str("<table class=\"numbers\"><thead><tr><th>printed where</th><th>what</th><th>unit</th><th class=\"n\">printed</th><th class=\"n\">computed</th><th class=\"n\">difference</th><th>verdict</th></tr></thead><tbody>\n");
         for one in &compared {
             row(page, one, false)?;
+        }
+        page.push_str("</tbody></table>\n");
+    }
+    let claims = printed.claims(done);
+    if !claims.is_empty() && drawn(done).is_some() {
+        page.push_str("<table><thead><tr><th>said in words where</th><th>what</th><th>found</th><th>holds</th></tr></thead><tbody>\n");
+        for (claim, found) in claims {
+            let (class, holds, found) = match found {
+                Some(found) if found.holds => ("pass", "yes", found.found.as_str()),
+                Some(found) => ("differs", "no", found.found.as_str()),
+                None => ("none", "not found out", ""),
+            };
+            let (place, says, found) = (escaped(&claim.place), escaped(&claim.says), escaped(found));
+            writeln!(
+                page,
+                "<tr><td>{place}</td><td>{says}</td><td>{found}</td><td class=\"{class}\">{holds}</td></tr>"
+            )?;
         }
         page.push_str("</tbody></table>\n");
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{Context as _, bail, ensure};
 use serde::Deserialize;
 
-use super::drawn::{Done, Outcome};
+use super::drawn::{Done, Found, Outcome};
 use super::registry::Figure;
 
 /// The data file.
@@ -16,6 +16,9 @@ pub struct Printed {
     pub kind: Vec<Kind>,
     /// Results, to be compared.
     pub result: Vec<Number>,
+    /// Results said in words.
+    #[serde(default)]
+    pub claim: Vec<Claim>,
     /// What is not a result, or not comparable by any computation here.
     pub other: Vec<Other>,
 }
@@ -61,6 +64,23 @@ pub struct Number {
     /// Why it cannot be compared although there may be a computed one.
     #[serde(default)]
     pub not_comparable: Option<String>,
+    /// Why the computed one differs, as far as is known.
+    #[serde(default)]
+    pub note: Option<String>,
+}
+
+/// A result said in words.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Claim {
+    /// Figure or table whose function looks whether it holds.
+    pub figure: String,
+    /// Key among what that function finds.
+    pub key: String,
+    /// What is said, in our words.
+    pub says: String,
+    /// Section.
+    pub place: String,
 }
 
 /// Printed numbers that are no results of a computation here.
@@ -161,6 +181,12 @@ impl Printed {
             let twin = self.result[..index].iter().any(|n| n.figure == *figure && n.key == *key);
             ensure!(!twin, "printed number {key} of figure {figure} is there twice");
         }
+        for Claim { figure, key, .. } in &self.claim {
+            ensure!(
+                figures.iter().any(|f| f.id == *figure),
+                "claim {key} belongs to figure {figure}, which there is not"
+            );
+        }
         Ok(())
     }
 
@@ -168,6 +194,15 @@ impl Printed {
     pub fn compare<'a>(&'a self, done: &Done) -> Vec<Compared<'a>> {
         let own = self.result.iter().filter(|n| n.figure == done.figure.id);
         own.map(|number| self.compare_one(number, &done.outcome)).collect()
+    }
+
+    /// What is said of a figure in words, with what was found, if anything.
+    pub fn claims<'a>(&'a self, done: &'a Done) -> Vec<(&'a Claim, Option<&'a Found>)> {
+        let found = |claim: &Claim| match &done.outcome {
+            Outcome::Drawn(saved) => saved.claims.get(&claim.key),
+            _ => None,
+        };
+        self.claim.iter().filter(|c| c.figure == done.figure.id).map(|c| (c, found(c))).collect()
     }
 
     fn compare_one<'a>(&self, number: &'a Number, outcome: &Outcome) -> Compared<'a> {
@@ -216,7 +251,8 @@ mod tests {
         let printed = Printed::load(&file).expect("it can be read");
         let verdict = |value: Option<f64>| {
             let values: BTreeMap<String, f64> = value.map(|v| ("a".to_owned(), v)).into_iter().collect();
-            let saved = Saved { panels: vec![], tables: vec![], values, notes: vec![], seconds: 0.0 };
+            let claims = BTreeMap::new();
+            let saved = Saved { panels: vec![], tables: vec![], values, claims, notes: vec![], seconds: 0.0 };
             let figure = FIGURES.iter().find(|f| f.id == "2.2").expect("there is one");
             printed.compare(&Done { figure, outcome: Outcome::Drawn(saved) }).remove(0).verdict
         };

@@ -119,7 +119,7 @@ pub const FIGURES: &[Figure] = &[
         "2.11",
         "Peak-to-peak transmission error over pit area",
         "What a pit adds to the peak-to-peak transmission error, by place and size.",
-        &["unity-pits-pitch.toml", "unity-pits-approach.toml", "unity-pits-recess.toml"],
+        &["unity-pits-pitch.toml", "unity-pits-approach-growth.toml", "unity-pits-recess-growth.toml"],
         chapter2::peak_to_peak,
     ),
     computed(

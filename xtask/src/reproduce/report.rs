@@ -38,7 +38,10 @@ pub fn write(all: &[Done], printed: &Printed, level: Level) -> anyhow::Result<()
             let number = one.number;
             let verdict = match &one.verdict {
                 Verdict::Pass => "pass",
-                Verdict::Differs => "**differs**",
+                Verdict::Differs => match &number.note {
+                    Some(note) => &format!("**differs**: {note}"),
+                    None => "**differs**",
+                },
                 // told once for the figure
                 Verdict::NotComparable(reason) if one.computed.is_none() => {
                     match silent.iter_mut().find(|s| s.0 == done.figure.id && s.2 == *reason) {
@@ -53,6 +56,14 @@ pub fn write(all: &[Done], printed: &Printed, level: Level) -> anyhow::Result<()
             let (shown, difference) = (one.shown(), one.difference());
             writeln!(text, "| {place} | {key} | {unit} | {} | {shown} | {difference} | {verdict} |", number.printed)?;
         }
+    }
+    text.push_str("\n## Said in words\n\n| where | what | found | holds |\n|---|---|---|---|\n");
+    for (claim, found) in all.iter().flat_map(|done| printed.claims(done)) {
+        let (found, holds) = match found {
+            Some(found) => (found.found.as_str(), if found.holds { "yes" } else { "**no**" }),
+            None => ("", "not found out"),
+        };
+        writeln!(text, "| {} | {} | {found} | {holds} |", claim.place, claim.says)?;
     }
     text.push_str("\n## Not compared\n\n| figure | numbers | why |\n|---|---|---|\n");
     for (id, count, reason) in silent {

@@ -1,7 +1,7 @@
 //! Static analysis of a case: healthy and damaged series, and force-deflection maps, in the units of the figures.
 
 use anyhow::{Context as _, anyhow};
-use fecm::statics::{PairModel, PositionResult, StaticsRequest};
+use fecm::statics::{PairModel, PositionResult, StaticsRequest, StaticsSeries};
 use gear_geom::Damage;
 use gearwright::case::SpurPairCase;
 use serde::{Deserialize, Serialize};
@@ -63,18 +63,23 @@ pub struct Statics {
 /// The healthy pair of a case.
 pub fn healthy(case: &SpurPairCase) -> anyhow::Result<Series> {
     let model = PairModel::new(&case.pair, &case.options).context("the gears cannot be modelled")?;
-    series(case, &model, "healthy", 0.0)
+    series(case, &model, None, "healthy", 0.0)
 }
 
 /// All severities of a case.
 pub fn damaged(case: &SpurPairCase) -> anyhow::Result<Vec<Series>> {
-    let mut model = PairModel::new(&case.pair, &case.options).context("the gears cannot be modelled")?;
+    let sound = PairModel::new(&case.pair, &case.options).context("the gears cannot be modelled")?;
+    // pits leave the positions alone at which nothing presses on them
+    let solved = sound.solve(&request(case), &()).context("the contact of the sound pair cannot be solved")?;
+    let mut before: Option<PairModel> = None;
     let mut all = Vec::new();
     for severity in &case.severities {
         // derived from the severity before: what they have in common is computed once
-        model =
-            model.with_damage(&severity.damage).with_context(|| format!("{} cannot be modelled", severity.label))?;
-        all.push(series(case, &model, &severity.label, percent(case, &severity.damage))?);
+        let model = (before.as_ref().unwrap_or(&sound).with_damage(&severity.damage))
+            .with_context(|| format!("{} cannot be modelled", severity.label))?;
+        let percent = percent(case, &severity.damage);
+        all.push(series(case, &model, Some((&sound, &solved)), &severity.label, percent)?);
+        before = Some(model);
     }
     Ok(all)
 }
@@ -112,22 +117,43 @@ fn area_fraction(case: &SpurPairCase, member: gear_geom::Member, pit: &gear_geom
     inside.sum::<usize>() as f64 / (SAMPLES * SAMPLES) as f64
 }
 
-fn series(case: &SpurPairCase, model: &PairModel, label: &str, percent: f64) -> anyhow::Result<Series> {
+/// All positions at the case's torque. Pressures say where a damaged pair differs from the sound one.
+fn request(case: &SpurPairCase) -> StaticsRequest {
+    StaticsRequest {
+        mesh_cycles: case.mesh_cycles.clone(),
+        torques: vec![case.inputs.load.torque_n_m],
+        stiffness_difference: case.inputs.analysis.stiffness_by_differences,
+        keep_pressure: true,
+    }
+}
+
+fn series(
+    case: &SpurPairCase,
+    model: &PairModel,
+    sound: Option<(&PairModel, &StaticsSeries)>,
+    label: &str,
+    percent: f64,
+) -> anyhow::Result<Series> {
     let origin = case.inputs.analysis.mesh_cycle_origin;
-    let solve = |torques: Vec<f64>, stiffness_difference: bool| -> anyhow::Result<Vec<Vec<Point>>> {
-        let mesh_cycles = case.mesh_cycles.clone();
-        let request = StaticsRequest { mesh_cycles, torques, stiffness_difference, keep_pressure: false };
-        let solved = model.solve(&request, &()).with_context(|| format!("the contact of {label} cannot be solved"))?;
-        Ok(solved.results.iter().map(|results| points(results, origin)).collect())
+    let shown = |solved: &StaticsSeries| -> Vec<Vec<Point>> {
+        solved.results.iter().map(|results| points(results, origin)).collect()
     };
-    let points = solve(vec![case.inputs.load.torque_n_m], case.inputs.analysis.stiffness_by_differences)?
-        .into_iter()
-        .next()
-        .ok_or_else(|| anyhow!("no positions"))?;
+    let unsolved = || format!("the contact of {label} cannot be solved");
+    let solved = match sound {
+        Some(known) => model.solve_from(&request(case), known, &()),
+        None => model.solve(&request(case), &()),
+    };
+    let points = shown(&solved.with_context(unsolved)?).into_iter().next().ok_or_else(|| anyhow!("no positions"))?;
     if points.is_empty() {
         return Err(anyhow!("no position of {label} has a usable answer"));
     }
-    let map = if case.map_torques.is_empty() { Vec::new() } else { solve(case.map_torques.clone(), false)? };
+    let map = if case.map_torques.is_empty() {
+        Vec::new()
+    } else {
+        let torques = case.map_torques.clone();
+        let request = StaticsRequest { torques, stiffness_difference: false, keep_pressure: false, ..request(case) };
+        shown(&model.solve(&request, &()).with_context(unsolved)?)
+    };
     Ok(Series { label: label.into(), percent, points, map })
 }
 

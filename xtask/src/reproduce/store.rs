@@ -112,8 +112,8 @@ impl Store {
             let file = format!("{id}-table-{}.{}.csv", index + 1, self.level.name());
             fs::write(place(&file), table.csv())?;
         }
-        let Drawn { tables, values, notes, seconds, .. } = drawn;
-        let saved = Saved { panels, tables, values, notes, seconds };
+        let Drawn { tables, values, claims, notes, seconds, .. } = drawn;
+        let saved = Saved { panels, tables, values, claims, notes, seconds };
         keep(&self.figure_file(id), &Kept { key: self.figure_key(inputs), value: &saved })?;
         Ok(saved)
     }

@@ -85,6 +85,7 @@ impl PairModel {
     /// As [`Self::new`].
     pub fn with_damage(&self, damage: &[Vec<ToothDamage>; 2]) -> Result<Self, FecmError> {
         let options = PairModelOptions { damage: damage.clone(), ..self.options.clone() };
+        options.validate()?;
         if self.stats().symmetric && !options.damage_is_symmetric() {
             return Self::new(self.pairing.pair(), &options);
         }

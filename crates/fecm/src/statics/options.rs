@@ -1,6 +1,6 @@
 //! What a static analysis needs besides the geometry.
 
-use gear_geom::ToothDamage;
+use gear_geom::{Damage, ToothDamage};
 
 use crate::body::BoreCondition;
 use crate::error::FecmError;
@@ -110,6 +110,12 @@ impl PairModelOptions {
         for member in [&self.pinion, &self.wheel] {
             member.material.validate()?;
             member.mesh.validate()?;
+        }
+        for one in self.damage.iter().flatten() {
+            if matches!(&one.damage, Damage::Pit(pit) if !pit.is_finite()) {
+                let allowed = "finite place, sizes and depth";
+                return Err(FecmError::Option { name: "pit on tooth", value: one.tooth as f64, allowed });
+            }
         }
         let contact = &self.contact;
         let order = match self.face {

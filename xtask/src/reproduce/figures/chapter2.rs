@@ -14,6 +14,8 @@ const FORCE: &str = "Tooth contact force (kN)";
 const STIFFNESS: &str = "Tooth pair stiffness (N/µm)";
 /// Colours of the four pits.
 const COLOURS: [&str; 4] = [BLUE, RED, GREEN, ORANGE];
+/// Times the healthy peak-to-peak error: below, a curve counts as flat.
+const FLAT: f64 = 1.005;
 /// Tooth pairs shown: before, of the damaged tooth, after.
 const PAIRS: [(i32, &str, Pattern); 3] =
     [(-1, "tooth i - 1", Pattern::Dashed), (0, "tooth i", Pattern::Solid), (1, "tooth i + 1", Pattern::DashDotted)];
@@ -159,25 +161,35 @@ pub fn peak_to_peak(context: &Context) -> anyhow::Result<Drawn> {
     let mut drawn = Drawn::default();
     let mut lines = Vec::new();
     let looks = [
-        (&PITCH, "pitch point", BLACK, Pattern::Solid),
-        (&APPROACH, "approach", BLUE, Pattern::Dashed),
-        (&RECESS, "recess", RED, Pattern::Dotted),
+        (PITCH.file, "pitch point", BLACK, Pattern::Solid),
+        ("unity-pits-approach-growth.toml", "approach", BLUE, Pattern::Dashed),
+        ("unity-pits-recess-growth.toml", "recess", RED, Pattern::Dotted),
     ];
-    for (place, name, colour, pattern) in looks {
-        let statics = context.statics(place.file)?;
+    for (file, name, colour, pattern) in looks {
+        let statics = context.statics(file)?;
         let all = std::iter::once(&statics.healthy).chain(&statics.damaged);
-        let points = all.map(|series| {
-            let errors = series.points.iter().map(|p| p.error);
-            let (low, high) = errors.fold((f64::INFINITY, 0.0_f64), |(l, h), e| (l.min(e), h.max(e)));
-            (series.percent, high - low)
-        });
-        lines.push(line(name, colour, pattern, points.collect()));
+        let points: Vec<(f64, f64)> = all
+            .map(|series| {
+                let errors = series.points.iter().map(|p| p.error);
+                let (low, high) = errors.fold((f64::INFINITY, 0.0_f64), |(l, h), e| (l.min(e), h.max(e)));
+                (series.percent, high - low)
+            })
+            .collect();
+        let Some((&healthy, damaged)) = points.split_first() else { continue };
+        let flat = damaged.iter().take_while(|p| p.1 < FLAT * healthy.1).last();
+        drawn.value(format!("{name}, flat up to"), flat.map_or(0.0, |p| p.0));
+        let rising: Vec<f64> = damaged.iter().map(|p| p.1).skip_while(|value| *value < FLAT * healthy.1).collect();
+        let (first, last) = (rising.first().unwrap_or(&healthy.1), rising.last().unwrap_or(&healthy.1));
+        let found = format!("{:.2} µm healthy, {first:.2} to {last:.2} µm", healthy.1);
+        drawn.claim(format!("{name}, rises"), rising.is_sorted_by(|a, b| a < b), found);
+        lines.push(line(name, colour, pattern, points));
     }
     let labels = ("Pit area (% of the active flank)", "Peak-to-peak transmission error (µm)");
-    let about = "Peak-to-peak static transmission error over the damaged area; healthy and four sizes at each place.";
+    let about = "Peak-to-peak static transmission error over the damaged area.";
     drawn.panels.push(Panel::chart("", about, labels, lines).zero_based());
     drawn.note(
-        "Four sizes per place, as in Figures 2.5 to 2.10; the dissertation's curves have more, which it does not list.",
+        "The dissertation does not list the sizes between those of Figures 2.5 to 2.10: at the pitch point there are none here, in approach and recess two \
+         between every two, interpolated. Flat means within 0.5 % of healthy.",
     );
     Ok(drawn)
 }

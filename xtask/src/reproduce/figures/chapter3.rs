@@ -1,6 +1,7 @@
 //! Chapter 3, statics: force-deflection behaviour, pits and cracks of the nonunity pair, and what both do to the transmission error.
 
 use gear_geom::Member;
+use gearwright::case::SpurPairCase;
 use gearwright::plot::{Line, Pattern};
 
 use super::scheme;
@@ -129,6 +130,9 @@ pub fn irregular_pit(context: &Context) -> anyhow::Result<Drawn> {
     let mut lines = vec![line("healthy", BLACK, Pattern::Solid, statics.healthy.average())];
     lines.extend(statics.damaged.iter().map(|s| line("pit", RED, Pattern::Solid, s.average())));
     drawn.panels.push(Panel::chart("b", "Average-slope stiffness.", (CYCLE, AVERAGE), lines));
+    if let Some((from, to)) = statics.damaged.first().and_then(|s| affected(&s.error(), &statics.healthy.error())) {
+        drawn.claim("felt in the recess only", from > 0.9 && to < 1.4, format!("{from:.2} to {to:.2}"));
+    }
     drawn.note("The pit's outline is printed in a drawing only: the shape here is an illustration, so no number can be compared.");
     Ok(drawn)
 }
@@ -173,7 +177,18 @@ pub fn single_contact_pits(context: &Context) -> anyhow::Result<Drawn> {
         drawn.value("70 %, increase of the largest error", 100.0 * grown);
         drawn.value("70 %, decrease of the least stiffness", 100.0 * sunk);
     }
+    let largest = top(&statics.healthy.error()).1;
+    saturation(&mut drawn, &statics, 7, |series| Some(100.0 * (top(&series.error()).1 / largest - 1.0)));
     Ok(drawn)
+}
+
+/// Whether an effect (%) grows up to a severity (counted from 1) and hardly after.
+fn saturation(drawn: &mut Drawn, statics: &Statics, up_to: usize, effect: impl Fn(&Series) -> Option<f64>) {
+    let all: Vec<f64> = statics.damaged.iter().filter_map(effect).collect();
+    let (Some(&there), Some(&whole)) = (all.get(up_to - 1), all.last()) else { return };
+    let grows = all[..up_to].is_sorted_by(|a, b| a < b);
+    let found = all.iter().map(|e| format!("{e:.2}")).collect::<Vec<_>>().join(", ");
+    drawn.claim("saturates", grows && (whole - there).abs() < 0.15 * there, format!("{found} %"));
 }
 
 /// Place of the largest relative increase of the transmission error, and where it begins and ends.
@@ -188,7 +203,9 @@ fn where_felt(drawn: &mut Drawn, statics: &Statics) {
     if let Some(pit) = statics.damaged.get(5) {
         let error = pit.error();
         let grown: Vec<(f64, f64)> = error.iter().filter_map(|p| Some((p.0, p.1 - at(&healthy, p.0)?))).collect();
-        drawn.value("cycle of the extremum", top(&grown).0);
+        let extremum = top(&grown).0;
+        drawn.value("cycle of the extremum", extremum);
+        saturation(drawn, statics, 6, |series| increase(&series.error(), &healthy, extremum));
     }
 }
 
@@ -240,13 +257,43 @@ pub fn pitch_pits(context: &Context) -> anyhow::Result<Drawn> {
     if let Some(small) = statics.damaged.first() {
         drawn.value("6.35 mm, largest error", top(&small.error()).1);
     }
+    let largest: Vec<(f64, f64)> = statics.damaged.iter().map(|series| top(&series.error())).collect();
+    let listed = |values: Vec<f64>| values.iter().map(|v| format!("{v:.2}")).collect::<Vec<_>>().join(", ");
+    let found = format!("{} µm", listed(largest.iter().map(|p| p.1).collect()));
+    drawn.claim("largest error rises with size", largest.is_sorted_by(|a, b| a.1 < b.1), found);
+    let lpstc = lowest_single_contact(&context.spur_pair("pitted-pitch.toml")?);
+    let above = largest.iter().all(|p| (lpstc - 0.02..lpstc + 0.2).contains(&p.0));
+    let found = format!("{}; LPSTC at {lpstc:.2}", listed(largest.iter().map(|p| p.0).collect()));
+    drawn.claim("largest error just above the LPSTC", above, found);
     Ok(drawn)
 }
 
 /// Figure 3.10.
 pub fn edge_pits(context: &Context) -> anyhow::Result<Drawn> {
     let about = "Pinion flank with seven pits at the pitch line on one edge; half of each ellipse lies on the tooth.";
-    Ok(sized_pits(context, "pitted-edge.toml", about, &[RED, "#d4b106", BLUE, GREEN, ORANGE, PURPLE, BROWN])?.0)
+    let colours = [RED, "#d4b106", BLUE, GREEN, ORANGE, PURPLE, BROWN];
+    let (mut drawn, statics) = sized_pits(context, "pitted-edge.toml", about, &colours)?;
+    let lpstc = lowest_single_contact(&context.spur_pair("pitted-edge.toml")?);
+    let healthy = statics.healthy.error();
+    let (mut near, mut found) = (true, Vec::new());
+    for series in &statics.damaged {
+        let error = series.error();
+        let grown: Vec<(f64, f64)> =
+            error.iter().filter_map(|p| Some((p.0, increase(&error, &healthy, p.0)?))).collect();
+        let (place, most) = top(&grown);
+        let recess = nan(at(&grown, 1.25));
+        near &= (place - lpstc).abs() < 0.2 && recess < 0.3 * most;
+        found.push(format!("{most:.1} % at {place:.2}, {recess:.1} % at 1.25"));
+    }
+    drawn.claim("largest difference near the LPSTC, small in the recess", near, found.join("; "));
+    Ok(drawn)
+}
+
+/// Mesh cycle at which contact is at the pinion's lowest point of single contact.
+fn lowest_single_contact(case: &SpurPairCase) -> f64 {
+    let landmarks = case.pair.landmarks(Member::Pinion);
+    let roll = landmarks.lpstc.map_or(landmarks.sap.roll_distance, |l| l.roll_distance);
+    case.inputs.analysis.mesh_cycle_origin + (roll - landmarks.pitch.roll_distance) / case.pair.base_pitch()
 }
 
 /// Figure 3.11.
@@ -264,11 +311,20 @@ pub fn unity_cracks(context: &Context) -> anyhow::Result<Drawn> {
     let side = case.pair.working_side(Member::Pinion);
     let inset = scheme::cracks(case.pair.pinion(), side, &lengths)?;
     drawn.panels.push(Panel::drawing("b", "The cracks in the mesh of the tooth.", inset));
-    let width = |series: &Series| nan(at(&series.of_pair(0, |p| p.width), 1.2));
-    drawn.value("healthy, contact width at 1.2", width(&statics.healthy));
+    let width = |series: &Series, pair: i32| nan(at(&series.of_pair(pair, |p| p.width), 1.2));
+    drawn.value("healthy, contact width at 1.2", width(&statics.healthy, 0));
     for (series, name) in statics.damaged.iter().zip(["a-b", "a-b-c", "a-b-c-d"]) {
-        drawn.value(format!("crack {name}, contact width at 1.2"), width(series));
+        drawn.value(format!("crack {name}, contact width at 1.2"), width(series, 0));
     }
+    let states = || std::iter::once(&statics.healthy).chain(&statics.damaged);
+    let [own, next] = [0, 1].map(|pair| states().map(|series| width(series, pair)).collect::<Vec<f64>>());
+    let shifts = own.is_sorted_by(|a, b| a > b) && next.is_sorted_by(|a, b| a < b);
+    let listed = |values: &[f64]| values.iter().map(|v| format!("{v:.3}")).collect::<Vec<_>>().join(", ");
+    drawn.claim(
+        "contact narrows on the cracked tooth",
+        shifts,
+        format!("{} mm; next {} mm", listed(&own), listed(&next)),
+    );
     drawn.note("The curves of Chen et al. are not in the text, nor are the lengths of the cracks: 20, 50 and 80 % are chosen here.");
     Ok(drawn)
 }
@@ -310,6 +366,17 @@ pub fn nonunity_cracks(context: &Context) -> anyhow::Result<Drawn> {
     if let Some(worst) = gear.damaged.last() {
         drawn.value("crack on the gear, cycle of the largest error", top(&worst.error()).0);
     }
+    let places = pinion.damaged.iter().map(|series| top(&series.error()).0).collect::<Vec<_>>();
+    let found = places.iter().map(|place| format!("{place:.2}")).collect::<Vec<_>>().join(", ");
+    drawn.claim("pinion: largest error just below 1", places.iter().all(|p| (0.8..1.0).contains(p)), found);
+    let both = pinion
+        .damaged
+        .iter()
+        .zip(&gear.damaged)
+        .map(|(p, g)| (top(&p.error()).1, top(&g.error()).1))
+        .collect::<Vec<_>>();
+    let found = both.iter().map(|(p, g)| format!("{p:.2} and {g:.2} µm")).collect::<Vec<_>>().join("; ");
+    drawn.claim("gear: larger error than pinion", both.iter().all(|(p, g)| g > p), found);
     drawn.note(ORIGIN);
     Ok(drawn)
 }

@@ -1,5 +1,6 @@
 //! Chapter 4: the phenomenon-based model, its fit to difference signals, and its condition indicators.
 
+use anyhow::Context as _;
 use gearwright::plot::{Line, Mark, Pattern};
 use hums::indicator::basic::{kurtosis, m8a, rms};
 use hums::phenomenon::fit::{Fit, FitOptions, fit};
@@ -17,11 +18,11 @@ use gear_geom::Member;
 const MESH: f64 = 1800.0;
 /// Mesh cycles of one turn of the pinion.
 const TURN: usize = 27;
-/// Natural frequency (Hz) and damping ratio of the chapter's model (printed: input of the phenomenon-based model).
-const MODE: (f64, f64) = (2733.33, 0.03992);
-/// Amplitude (um) and delay (s) of the printed model of the 20 % crack, input of Figures 4.9 and 4.10.
+/// The printed model of the 20 % crack (um, s, Hz): input of Figures 4.9 and 4.10, which are closed expressions of it.
 const PRINTED: DampedSine =
-    DampedSine { amplitude: 2.798, delay: 0.000_475_303, natural_frequency: MODE.0, damping: MODE.1 };
+    DampedSine { amplitude: 2.798, delay: 0.000_475_303, natural_frequency: 2733.33, damping: 0.03992 };
+/// Crack (%) whose signal gives the pair's natural frequency and damping ratio: large enough to be clear, small enough to stay in contact.
+const LINEAR: f64 = 20.0;
 const GROWTH: &str = "cracked-pinion-plane-growth.toml";
 /// Mesh cycle at which the damaged tooth engages (printed): where the record of a difference signal begins.
 const ENGAGED: f64 = 14.02;
@@ -48,9 +49,28 @@ impl Signal {
         values.iter().enumerate().map(|(k, y)| (k as f64 / self.rate * MESH, *y)).collect()
     }
 
-    fn fitted(&self) -> anyhow::Result<Fit> {
-        Ok(fit(&self.samples, self.rate, &FitOptions::amplitude_and_delay(MODE.0, MODE.1))?)
+    /// Amplitude and delay for a known natural frequency (Hz) and damping ratio.
+    fn fitted(&self, (frequency, damping): (f64, f64)) -> anyhow::Result<Fit> {
+        Ok(fit(&self.samples, self.rate, &FitOptions::amplitude_and_delay(frequency, damping))?)
     }
+}
+
+/// Natural frequency (Hz) and damping ratio of the computed pair: all four parameters fitted to the signal of one crack.
+fn mode(signals: &[Signal]) -> anyhow::Result<(f64, f64)> {
+    const TYPICAL: (f64, f64) = (2700.0, 0.04);
+    let clear = signals.iter().find(|s| (s.percent - LINEAR).abs() < 1e-9).context("no crack to find the mode from")?;
+    let start = FitOptions::amplitude_and_delay(TYPICAL.0, TYPICAL.1);
+    let found =
+        fit(&clear.samples, clear.rate, &FitOptions { free_frequency: true, free_damping: true, ..start })?.model;
+    Ok((found.natural_frequency, found.damping))
+}
+
+fn mode_note((frequency, damping): (f64, f64)) -> String {
+    format!(
+        "Natural frequency {frequency:.1} Hz and damping ratio {damping:.5} of the damped sine are the computed pair's own, from a fit of all four parameters to \
+         the {LINEAR} % crack; the dissertation's pair has {} Hz and {}.",
+        PRINTED.natural_frequency, PRINTED.damping
+    )
 }
 
 fn growth(context: &Context) -> anyhow::Result<Dynamics> {
@@ -248,9 +268,10 @@ pub fn fitted_signals(context: &Context) -> anyhow::Result<Drawn> {
     let letters = [["a", "b"], ["c", "d"], ["e", "f"]];
     let dynamics = growth(context)?;
     let signals: Vec<Signal> = dynamics.damaged.iter().map(|m| Signal::new(&dynamics, m)).collect();
+    let mode = mode(&signals)?;
     for (percent, [time, frequency]) in [20.0, 50.0, 80.0].into_iter().zip(letters) {
         let Some(signal) = signals.iter().find(|s| (s.percent - percent).abs() < 1e-9) else { continue };
-        let model = signal.fitted()?;
+        let model = signal.fitted(mode)?;
         let values = model.model.samples(signal.samples.len(), signal.rate)?;
         let pair = |exact: Vec<(f64, f64)>, fitted: Vec<(f64, f64)>| -> Vec<Line> {
             vec![
@@ -276,14 +297,17 @@ pub fn fitted_signals(context: &Context) -> anyhow::Result<Drawn> {
     }
     drawn.note(MODEL);
     drawn.note(CRACKED);
+    drawn.note(mode_note(mode));
     Ok(drawn)
 }
 
 /// Figure 4.7.
 pub fn amplitude_and_delay(context: &Context) -> anyhow::Result<Drawn> {
     let (mut amplitude, mut delay) = (Vec::new(), Vec::new());
-    for signal in signals(context)? {
-        let model = signal.fitted()?.model;
+    let signals = signals(context)?;
+    let mode = mode(&signals)?;
+    for signal in signals {
+        let model = signal.fitted(mode)?.model;
         amplitude.push((signal.percent, model.amplitude));
         delay.push((signal.percent, model.delay * 1e3));
     }
@@ -295,6 +319,7 @@ pub fn amplitude_and_delay(context: &Context) -> anyhow::Result<Drawn> {
     }
     drawn.note(MODEL);
     drawn.note(CRACKED);
+    drawn.note(mode_note(mode));
     Ok(drawn)
 }
 
@@ -316,8 +341,10 @@ const INDICATORS: [(&str, &str); 3] = [("a", "RMS (µm)"), ("b", "FM4"), ("c", "
 /// Figure 4.8.
 pub fn indicators(context: &Context) -> anyhow::Result<Drawn> {
     let mut rows: Vec<(f64, [[f64; 3]; 3])> = Vec::new();
-    for signal in signals(context)? {
-        let model = signal.fitted()?.model;
+    let signals = signals(context)?;
+    let mode = mode(&signals)?;
+    for signal in signals {
+        let model = signal.fitted(mode)?.model;
         let samples = model.samples(signal.samples.len(), signal.rate)?;
         let duration = TURN as f64 / MESH;
         let closed =
@@ -349,6 +376,7 @@ pub fn indicators(context: &Context) -> anyhow::Result<Drawn> {
     }
     drawn.note(MODEL);
     drawn.note(CRACKED);
+    drawn.note(mode_note(mode));
     Ok(drawn)
 }
 
@@ -434,13 +462,13 @@ pub fn sensitivity(_: &Context) -> anyhow::Result<Drawn> {
         let sine = DampedSine { damping, ..PRINTED };
         rows.push((damping, by(sine, cycles(&sine))?));
     }
-    sweeps.push(("Damping ratio", MODE.1, rows));
+    sweeps.push(("Damping ratio", PRINTED.damping, rows));
     let mut rows = Vec::new();
     for natural_frequency in steps(1000.0, 5000.0) {
         let sine = DampedSine { natural_frequency, ..PRINTED };
         rows.push((natural_frequency, by(sine, cycles(&sine))?));
     }
-    sweeps.push(("Natural frequency (Hz)", MODE.0, rows));
+    sweeps.push(("Natural frequency (Hz)", PRINTED.natural_frequency, rows));
     let mut rows = Vec::new();
     for n in steps(20.0, 160.0) {
         rows.push((n, by(PRINTED, n)?));

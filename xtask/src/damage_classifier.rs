@@ -2,14 +2,22 @@
 
 use std::fmt::Write as _;
 
-use fecm::statics::PositionResult;
-use gear_geom::Pit;
+use anyhow::bail;
+use fecm::statics::{PairModel, StaticsRequest};
+use gear_geom::{Damage, Member, Pit, ProfileMeasure, RootCrack, ToothDamage};
+use gearwright::case::spur_pair::damage::Severity;
+use gearwright::case::{self, SpurPairCase};
 use hums::damage_type::{AFFECTED, CurveFeatures, DamageClassifier, DamageType, SeverityFeature};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::damage::{PITCH_PITS, scene::Scene};
+use crate::reproduce::root;
 
+const REPORT: &str = "docs/reports/damage-classifier.md";
+/// The pair, and the six pits that are the reference.
+const CASE: &str = "pitted-pitch.toml";
+/// Mesh cycles from the pitch point, and positions in one.
+const CYCLES: (f64, f64, f64) = (-1.0, 1.2, 50.0);
 /// Severities of the reference cracks: fraction of the chord.
 const REFERENCE_CRACKS: [f64; 8] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8];
 /// Severities of the cracks to be told.
@@ -42,45 +50,99 @@ struct Sample {
     curve: Vec<f64>,
 }
 
-/// Computes the curves and writes the tables.
-pub fn report() -> anyhow::Result<String> {
-    let scene = Scene::new("nonunity-pair.toml", -0.25, 1.95, None)?;
-    let landmarks = scene.case.pair.landmarks(gear_geom::Member::Pinion);
-    let rolls = [landmarks.sap.roll_distance, landmarks.eap.roll_distance];
-    let width = scene.case.pair.pinion().facewidth().min(scene.case.pair.wheel().facewidth());
-    let curve = |results: &[PositionResult]| -> Vec<f64> {
-        results.iter().map(|r| r.static_transmission_error * 1e6).collect()
-    };
-    let crack = |fraction: f64| -> anyhow::Result<Sample> {
+/// The healthy pair, to which damage is done.
+struct Scene {
+    case: SpurPairCase,
+    model: PairModel,
+}
+
+impl Scene {
+    fn new() -> anyhow::Result<Self> {
+        let case = case::load_spur_pair(&root().join("configs").join(CASE))?;
+        let model = PairModel::new(&case.pair, &case.options)?;
+        Ok(Self { case, model })
+    }
+
+    /// Transmission error (um).
+    fn curve(&self, model: &PairModel) -> anyhow::Result<Vec<f64>> {
+        let (from, to, per_cycle) = CYCLES;
+        let count = ((to - from) * per_cycle).round() as u32;
+        let request = StaticsRequest {
+            mesh_cycles: (0..=count).map(|k| from + f64::from(k) / per_cycle).collect(),
+            torques: vec![self.case.inputs.load.torque_n_m],
+            stiffness_difference: false,
+            keep_pressure: false,
+        };
+        let series = model.solve(&request, &())?;
+        Ok(series.results.iter().flatten().map(|r| r.static_transmission_error * 1e6).collect())
+    }
+
+    /// With damage of tooth 0 of the pinion.
+    fn damaged(&self, damage: Damage) -> anyhow::Result<Vec<f64>> {
+        self.curve(&self.model.with_damage(&[vec![ToothDamage { tooth: 0, damage }], vec![]])?)
+    }
+
+    fn crack(&self, fraction: f64) -> anyhow::Result<Sample> {
         let severity = 100.0 * fraction;
-        let name = format!("crack {severity:.0} %");
-        Ok(Sample { name, damage: DamageType::Crack, severity, curve: curve(&scene.cracked(0, fraction)?) })
-    };
-    let pit = |shift: f64, (w, h): (f64, f64)| -> anyhow::Result<Sample> {
-        let one: Pit = scene.pit(scene.case.pair.pitch_roll() + shift * 1e-3, w, h, None);
-        let severity = 100.0 * one.area_fraction(width, rolls);
-        let name = format!("pit {w} x {h} mm at {shift:+} mm");
-        Ok(Sample { name, damage: DamageType::Pit, severity, curve: curve(&scene.pitted(one)?) })
-    };
-    let cracks = REFERENCE_CRACKS.iter().map(|&f| crack(f)).collect::<Result<Vec<_>, _>>()?;
-    let pits = PITCH_PITS.iter().map(|&size| pit(0.0, size)).collect::<Result<Vec<_>, _>>()?;
-    let mut samples = CRACKS.iter().map(|&f| crack(f)).collect::<Result<Vec<_>, _>>()?;
+        let crack = RootCrack::along_chord(self.case.pair.working_side(Member::Pinion), fraction);
+        let curve = self.damaged(Damage::Crack(crack))?;
+        Ok(Sample { name: format!("crack {severity:.0} %"), damage: DamageType::Crack, severity, curve })
+    }
+
+    /// A pit, its severity the part of the loaded flank.
+    fn pit(&self, name: String, pit: &Pit) -> anyhow::Result<Sample> {
+        let landmarks = self.case.pair.landmarks(Member::Pinion);
+        let rolls = [landmarks.sap.roll_distance, landmarks.eap.roll_distance];
+        let width = self.case.pair.pinion().facewidth().min(self.case.pair.wheel().facewidth());
+        let severity = 100.0 * pit.area_fraction(width, rolls);
+        Ok(Sample { name, damage: DamageType::Pit, severity, curve: self.damaged(Damage::Pit(pit.clone()))? })
+    }
+
+    /// A pit of a size at a distance from the pitch point (mm), its height an arc length.
+    fn pit_at(&self, shift: f64, (width, height): (f64, f64)) -> anyhow::Result<Sample> {
+        let measure = ProfileMeasure::ArcLength { base_radius: self.case.pair.pinion().base_radius() };
+        let roll = self.case.pair.pitch_roll() + shift * 1e-3;
+        let pit = Pit::ellipse(0.0, roll, width * 1e-3, height * 1e-3, measure);
+        self.pit(format!("pit {width} x {height} mm at {shift:+} mm"), &pit)
+    }
+
+    /// The pits of the case file.
+    fn reference_pits(&self) -> anyhow::Result<Vec<Sample>> {
+        let one = |severity: &Severity| match &severity.damage[0][..] {
+            [ToothDamage { damage: Damage::Pit(pit), .. }] => self.pit(severity.label.clone(), pit),
+            _ => bail!("configs/{CASE} has other damage than one pit"),
+        };
+        self.case.severities.iter().map(one).collect()
+    }
+}
+
+/// Computes the curves and writes the report.
+///
+/// # Errors
+/// The crates', the file system's.
+pub fn run() -> anyhow::Result<()> {
+    let scene = Scene::new()?;
+    let cracks = REFERENCE_CRACKS.iter().map(|&f| scene.crack(f)).collect::<Result<Vec<_>, _>>()?;
+    let pits = scene.reference_pits()?;
+    let mut samples = CRACKS.iter().map(|&f| scene.crack(f)).collect::<Result<Vec<_>, _>>()?;
     for shift in SHIFTS {
         for size in PITS {
-            samples.push(pit(shift, size)?);
+            samples.push(scene.pit_at(shift, size)?);
         }
     }
-    let healthy = curve(&scene.healthy);
-    let step = scene.cycles[1] - scene.cycles[0];
+    let healthy = scene.curve(&scene.model)?;
+    let step = 1.0 / CYCLES.2;
     let mut text = String::from(TEXT);
     for noise in NOISES {
         section(&mut text, &Study { healthy: &healthy, step, cracks: &cracks, pits: &pits, samples: &samples }, noise)?;
     }
-    Ok(text)
+    std::fs::write(root().join(REPORT), text)?;
+    println!("written: {REPORT}");
+    Ok(())
 }
 
 const TEXT: &str = "# Damage type and severity from the transmission error\n\n\
-Written by `cargo xtask dissertation classifier`. `hums::damage_type` on the nonunity pair (3-D, 424 N m): references from cracks of 10 to 80 % of the chord\n\
+Written by `cargo xtask damage-classifier`. `hums::damage_type` on the nonunity pair (3-D, 424 N m): references from cracks of 10 to 80 % of the chord\n\
 and the six pits of Figure 3.9; then other cracks, and pits of other sizes, shapes and centres than the references'. Severities of cracks are per cent of the\n\
 chord, of pits per cent of the active flank. Noise is normal, independent from position to position, relative to the local value; the excess that counts as\n\
 affected is then 1 % or three standard deviations, whichever is more, and rises below that count as none.\n";
