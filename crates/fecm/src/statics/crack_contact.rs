@@ -70,11 +70,13 @@ impl CrackFaceContact {
     }
 }
 
+/// From loads on the flank of a tooth to openings, by crack, family and tooth.
+type FlankMatrices = BTreeMap<(usize, usize, i32), Arc<Mat<f64>>>;
+
 /// The faces of all cracks of a pair of gears, ready to join contact problems.
 pub(super) struct CrackFaces {
     pub cracks: Vec<CrackOnTooth>,
-    /// From loads on the flank of a tooth to openings, by crack, family and tooth.
-    flank: Mutex<BTreeMap<(usize, usize, i32), Arc<Mat<f64>>>>,
+    flank: Mutex<FlankMatrices>,
 }
 
 /// One crack.
@@ -87,7 +89,7 @@ pub(super) struct CrackOnTooth {
     /// `(K_II^-1 w)^T` at the flank's unknowns, by family.
     own: Vec<Mat<f64>>,
     /// `c`, by family.
-    on_cuts: Vec<Mat<f64>>,
+    pub on_cuts: Vec<Mat<f64>>,
     /// `w^T K_II^-1 w`, all families.
     interior: Mat<f64>,
 }
