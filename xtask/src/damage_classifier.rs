@@ -36,7 +36,10 @@ const PITS: [(f64, f64); 10] = [
     (30.0, 6.5),
 ];
 /// Shifts of the pits' centre from the pitch point (mm of roll distance).
-const SHIFTS: [f64; 2] = [0.0, 0.7];
+const SHIFTS: [f64; 4] = [-1.2, 0.0, 0.7, 1.4];
+/// Sizes (mm) and shifts of the pits that bound what may be a crack; none of them is to be told.
+const BOUNDING_PITS: [(f64, f64); 4] = [(6.0, 1.6), (6.0, 5.0), (23.0, 1.6), (23.0, 5.0)];
+const BOUNDING_SHIFTS: [f64; 3] = [-1.8, 0.9, 1.8];
 /// Noise, relative to the local value.
 const NOISES: [f64; 5] = [0.0, 0.002, 0.005, 0.01, 0.02];
 const DRAWS: u64 = 200;
@@ -124,6 +127,12 @@ pub fn run() -> anyhow::Result<()> {
     let scene = Scene::new()?;
     let cracks = REFERENCE_CRACKS.iter().map(|&f| scene.crack(f)).collect::<Result<Vec<_>, _>>()?;
     let pits = scene.reference_pits()?;
+    let mut bounds = Vec::new();
+    for shift in BOUNDING_SHIFTS {
+        for size in BOUNDING_PITS {
+            bounds.push(scene.pit_at(shift, size)?);
+        }
+    }
     let mut samples = CRACKS.iter().map(|&f| scene.crack(f)).collect::<Result<Vec<_>, _>>()?;
     for shift in SHIFTS {
         for size in PITS {
@@ -134,7 +143,8 @@ pub fn run() -> anyhow::Result<()> {
     let step = 1.0 / CYCLES.2;
     let mut text = String::from(TEXT);
     for noise in NOISES {
-        section(&mut text, &Study { healthy: &healthy, step, cracks: &cracks, pits: &pits, samples: &samples }, noise)?;
+        let study = Study { healthy: &healthy, step, cracks: &cracks, pits: &pits, bounds: &bounds, samples: &samples };
+        section(&mut text, &study, noise)?;
     }
     std::fs::write(root().join(REPORT), text)?;
     println!("written: {REPORT}");
@@ -143,8 +153,8 @@ pub fn run() -> anyhow::Result<()> {
 
 const TEXT: &str = "# Damage type and severity from the transmission error\n\n\
 Written by `cargo xtask damage-classifier`. `hums::damage_type` on the nonunity pair (3-D, 424 N m): references from cracks of 10 to 80 % of the chord\n\
-and the six pits of Figure 3.9; then other cracks, and pits of other sizes, shapes and centres than the references'. Severities of cracks are per cent of the\n\
-chord, of pits per cent of the active flank. Noise is normal, independent from position to position, relative to the local value; the excess that counts as\n\
+and the six pits of Figure 3.9, with twelve pits at other places as bounds of what may be a crack; then cracks and pits of other sizes, shapes and centres than\n\
+all of these. Severities of cracks are per cent of the chord, of pits per cent of the active flank. Noise is normal, independent from position to position, relative to the local value; the excess that counts as\n\
 affected is then 1 % or three standard deviations, whichever is more, and rises below that count as none.\n";
 
 struct Study<'a> {
@@ -152,6 +162,7 @@ struct Study<'a> {
     step: f64,
     cracks: &'a [Sample],
     pits: &'a [Sample],
+    bounds: &'a [Sample],
     samples: &'a [Sample],
 }
 
@@ -166,6 +177,7 @@ fn section(text: &mut String, study: &Study<'_>, noise: f64) -> anyhow::Result<(
         if noise > 0.0 { threshold } else { 0.0 },
         &reference(study.cracks)?,
         &reference(study.pits)?,
+        &study.bounds.iter().map(|sample| features(&sample.curve)).collect::<Result<Vec<_>, _>>()?,
     )?;
     // rows: crack, pit; columns: crack, pit, none
     let mut confusion = [[0_usize; 3]; 2];
@@ -193,11 +205,12 @@ fn section(text: &mut String, study: &Study<'_>, noise: f64) -> anyhow::Result<(
                     .map_or(("none".to_owned(), 0.0), |d| (format!("{:?}", d.damage).to_lowercase(), d.severity));
                 writeln!(
                     rows,
-                    "| {} | {:.1} | {:.1} | {:.2} | {found} | {severity:.1} | {:.2} |",
+                    "| {} | {:.1} | {:.1} | {:.2} | {:.2} | {found} | {severity:.1} | {:.2} |",
                     sample.name,
                     sample.severity,
                     100.0 * features.peak_rise,
                     features.affected,
+                    features.centre,
                     diagnosis.margin
                 )?;
             }
@@ -213,7 +226,7 @@ fn section(text: &mut String, study: &Study<'_>, noise: f64) -> anyhow::Result<(
     writeln!(
         text,
         "\n## Noise {:.1} %\n\n| | said crack | said pit | said none |\n|---|---|---|---|\n| crack | {} | {} | {} |\n| pit | {} | {} | {} |\n\n\
-         {:.1} % right. Median error of severity where the type is right: cracks {crack_error:.1}, pits {pit_error:.1} percentage points.",
+         {:.1} % right; what lies within {:.2} mesh cycles of a crack is called one. Median error of severity where the type is right: cracks {crack_error:.1}, pits {pit_error:.1} percentage points.",
         100.0 * noise,
         confusion[0][0],
         confusion[0][1],
@@ -222,13 +235,14 @@ fn section(text: &mut String, study: &Study<'_>, noise: f64) -> anyhow::Result<(
         confusion[1][1],
         confusion[1][2],
         100.0 * right as f64 / all as f64,
+        classifier.reach(),
     )?;
     println!("noise {noise}: {confusion:?}");
     if !rows.is_empty() {
         write!(
             text,
-            "\n| damage | severity (%) | rise of the peak (%) | affected (cycles) | said | severity said (%) | margin (cycles) |\n\
-             |---|---|---|---|---|---|---|\n{rows}"
+            "\n| damage | severity (%) | rise of the peak (%) | affected (cycles) | centre (cycles) | said | severity said (%) | margin (cycles) |\n\
+             |---|---|---|---|---|---|---|---|\n{rows}"
         )?;
     }
     Ok(())

@@ -202,12 +202,6 @@ fn invariant_crack_on_the_coast_side_closes() {
             let largest =
                 |tips: Vec<fecm::statics::CrackTip>| tips.iter().fold(0.0_f64, |m, tip| m.max(tip.k_one.abs()));
             let [open, shut] = [largest(free_tips.read(free).unwrap()), largest(tips.read(closed).unwrap())];
-            println!(
-                "{face:?} {at}: {:.2} % free, {:.2} % closed, {:.1} N, K_I {open:.4e} free, {shut:.4e} closed",
-                100.0 * without,
-                100.0 * with,
-                closed.crack_faces[0].total_force()
-            );
             assert!(shut < 0.05 * open, "{face:?} {at}: K_I {open} free, {shut} closed");
         }
     }

@@ -238,7 +238,7 @@ fn extreme_malformed_problems_are_typed_errors() {
         LcpError::Value { what: "gap", cell: 1, .. }
     ));
     assert!(matches!(
-        solve(&Case { arm: vec![1.0, 0.0], ..clone(&good) }),
+        solve(&Case { arm: vec![1.0, -1.0], ..clone(&good) }),
         LcpError::Value { what: "arm", cell: 1, .. }
     ));
     assert!(matches!(solve(&Case { load: -1.0, ..clone(&good) }), LcpError::Load { .. }));

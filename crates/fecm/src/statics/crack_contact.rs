@@ -20,6 +20,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use faer::Mat;
 
 use super::model::PairModel;
+use super::position::Settled;
 use super::reading::SectorReading;
 use crate::body::{GearBody, Station};
 use crate::condense::CondensedBody;
@@ -70,11 +71,13 @@ impl CrackFaceContact {
     }
 }
 
+/// From loads on the flank of a tooth to openings, by crack, family and tooth.
+type FlankMatrices = BTreeMap<(usize, usize, i32), Arc<Mat<f64>>>;
+
 /// The faces of all cracks of a pair of gears, ready to join contact problems.
 pub(super) struct CrackFaces {
     pub cracks: Vec<CrackOnTooth>,
-    /// From loads on the flank of a tooth to openings, by crack, family and tooth.
-    flank: Mutex<BTreeMap<(usize, usize, i32), Arc<Mat<f64>>>>,
+    flank: Mutex<FlankMatrices>,
 }
 
 /// One crack.
@@ -87,7 +90,7 @@ pub(super) struct CrackOnTooth {
     /// `(K_II^-1 w)^T` at the flank's unknowns, by family.
     own: Vec<Mat<f64>>,
     /// `c`, by family.
-    on_cuts: Vec<Mat<f64>>,
+    pub on_cuts: Vec<Mat<f64>>,
     /// `w^T K_II^-1 w`, all families.
     interior: Mat<f64>,
 }
@@ -282,9 +285,43 @@ fn by_station(flank: &Mat<f64>, station: &Station, functions: usize) -> Mat<f64>
     modal
 }
 
+impl PairModel {
+    /// Solves the flanks' contact problem, with the faces of cracks in it where they would overlap.
+    pub(super) fn solve_cells(
+        &self,
+        problem: &ContactProblem<'_>,
+        cracks: Option<&CrackCells>,
+        warm: Option<&[bool]>,
+    ) -> Result<(ContactSolution, Option<CrackState>), FecmError> {
+        let open = solve_contact(self.options.contact.solver, problem, warm)?;
+        match cracks {
+            Some(cracks) => cracks.solve(self, problem, open),
+            None => Ok((open, None)),
+        }
+    }
+}
+
+impl Settled {
+    /// Takes the compliance between all cells (m/N), with the crack faces that press on each other held together.
+    pub(crate) fn take_held_compliance(&mut self) -> Result<Mat<f64>, FecmError> {
+        let mut compliance = std::mem::replace(&mut self.compliance, Mat::new());
+        if let (Some(cracks), Some(state)) = (&self.cracks, &self.crack_state) {
+            cracks.hold(&mut compliance, state)?;
+        }
+        Ok(compliance)
+    }
+
+    pub(super) fn crack_contacts(&self, model: &PairModel) -> Vec<CrackFaceContact> {
+        match (&self.cracks, &self.crack_state) {
+            (Some(cracks), Some(state)) => cracks.contacts(model.crack_faces(), state),
+            _ => Vec::new(),
+        }
+    }
+}
+
 impl CrackCells {
     /// Solves a contact problem with the faces of cracks in it. Returns the solution on the flanks, and the state of the faces where they touch.
-    pub(super) fn solve(
+    fn solve(
         &self,
         model: &PairModel,
         problem: &ContactProblem<'_>,
@@ -321,7 +358,7 @@ impl CrackCells {
     }
 
     /// Compliance of the flanks with the faces that carry load held closed: `C - G_A^T F_AA^-1 G_A` (m/N).
-    pub(super) fn hold(&self, compliance: &mut Mat<f64>, state: &CrackState) -> Result<(), FecmError> {
+    fn hold(&self, compliance: &mut Mat<f64>, state: &CrackState) -> Result<(), FecmError> {
         let closed: Vec<usize> = (0..state.forces.len()).filter(|&i| state.forces[i] > 0.0).collect();
         let factor = DenseCholesky::new(lower_triangle(self.compliance.as_ref(), &closed), "crack faces")?;
         let own = Mat::from_fn(closed.len(), self.coupling.ncols(), |i, j| self.coupling[(closed[i], j)]);
@@ -333,7 +370,7 @@ impl CrackCells {
     }
 
     /// Results of the cracks whose faces carry load.
-    pub(super) fn contacts(&self, faces: &CrackFaces, state: &CrackState) -> Vec<CrackFaceContact> {
+    fn contacts(&self, faces: &CrackFaces, state: &CrackState) -> Vec<CrackFaceContact> {
         let loaded = self.cracks.iter().filter(|(_, rows)| state.forces[rows.clone()].iter().any(|&f| f > 0.0));
         let contact = |(index, rows): &(usize, Range<usize>)| {
             let crack = &faces.cracks[*index];

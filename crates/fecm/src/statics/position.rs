@@ -8,7 +8,7 @@ use super::result::{PairState, PositionResult, PositionStats, PositionStatus, Pr
 use crate::contact::{ContactGrid, PairGrid};
 use crate::error::FecmError;
 use crate::face::FaceModel;
-use crate::lcp::{ContactProblem, ContactSolution, SolveStats, solve_contact};
+use crate::lcp::{ContactProblem, ContactSolution, SolveStats};
 use crate::nearfield::NearField;
 use crate::pairing::Touch;
 use crate::search::{NoCell, OpposedPoints};
@@ -235,20 +235,6 @@ impl PairModel {
         Ok(outcome)
     }
 
-    /// Solves the flanks' contact problem, with the faces of cracks in it where they would overlap.
-    fn solve_cells(
-        &self,
-        problem: &ContactProblem<'_>,
-        cracks: Option<&CrackCells>,
-        warm: Option<&[bool]>,
-    ) -> Result<(ContactSolution, Option<CrackState>), FecmError> {
-        let open = solve_contact(self.options.contact.solver, problem, warm)?;
-        match cracks {
-            Some(cracks) => cracks.solve(self, problem, open),
-            None => Ok((open, None)),
-        }
-    }
-
     /// Pairs that the deflection can close, the wheel closed by `rotation`, with rows around what is known of their contact (`spans`), else
     /// around their nearest approach.
     fn grid(
@@ -394,24 +380,6 @@ impl PairModel {
     #[must_use]
     pub fn is_solid(&self) -> bool {
         matches!(self.options.face, FaceModel::Solid { .. })
-    }
-}
-
-impl Settled {
-    /// Takes the compliance between all cells (m/N), with the crack faces that press on each other held together.
-    pub(crate) fn take_held_compliance(&mut self) -> Result<Mat<f64>, FecmError> {
-        let mut compliance = std::mem::replace(&mut self.compliance, Mat::new());
-        if let (Some(cracks), Some(state)) = (&self.cracks, &self.crack_state) {
-            cracks.hold(&mut compliance, state)?;
-        }
-        Ok(compliance)
-    }
-
-    fn crack_contacts(&self, model: &PairModel) -> Vec<super::CrackFaceContact> {
-        match (&self.cracks, &self.crack_state) {
-            (Some(cracks), Some(state)) => cracks.contacts(model.crack_faces(), state),
-            _ => Vec::new(),
-        }
     }
 }
 
