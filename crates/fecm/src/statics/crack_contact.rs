@@ -87,7 +87,7 @@ pub(super) struct CrackOnTooth {
     /// `(K_II^-1 w)^T` at the flank's unknowns, by family.
     own: Vec<Mat<f64>>,
     /// `c`, by family.
-    on_cuts: Vec<Mat<f64>>,
+    pub on_cuts: Vec<Mat<f64>>,
     /// `w^T K_II^-1 w`, all families.
     interior: Mat<f64>,
 }

@@ -16,6 +16,7 @@ use crate::body::{GearBody, ToothSector};
 use crate::element::lagrange::lobatto_points;
 use crate::error::FecmError;
 use crate::face::FaceModel;
+use crate::functional::Functional;
 use crate::mesh::SectorMesh;
 use crate::surface::SurfacePoint;
 
