@@ -105,6 +105,23 @@ pub enum FecmError {
     /// A malformed contact problem.
     #[error(transparent)]
     Contact(#[from] crate::lcp::LcpError),
+    /// An inertia smaller than that of the elastic modes it is to hold.
+    #[error(
+        "{inertia} of the {body} = {given:.6e} {unit} is less than its elastic modes alone carry, {carried:.6e} {unit}: give the inertia of \
+         all that moves with the hub, the gear itself included, or keep no elastic modes"
+    )]
+    LightHub {
+        /// Which gear.
+        body: &'static str,
+        /// Which inertia.
+        inertia: &'static str,
+        /// As given.
+        given: f64,
+        /// What the modes carry.
+        carried: f64,
+        /// Unit of both.
+        unit: &'static str,
+    },
     /// A material point was not found in the mesh.
     #[error(
         "no element of the {body} mesh holds the point ({x:.6} m, {y:.6} m) at depth {depth:.3e} m below the flank"

@@ -1,7 +1,5 @@
 //! Mass and hub-fixed modes of a gear: against the gear assembled as one body, closed forms and static completeness.
 
-use std::collections::HashMap;
-
 use faer::Mat;
 use fecm::body::{BodyOptions, BoreCondition, GearBody, Station};
 use fecm::condense::{CondensedBody, Substructure};
@@ -12,9 +10,13 @@ use fecm::mesh::{FlankEdge, MeshDensity, PlaneMesh, SectorMesh};
 use fecm::modes::Twin;
 use fecm::{BodyInertia, FaceModel, FecmError, GearModes, Material, ModesOptions};
 use gear_geom::{FilletSpec, FlankSide, Gear, GearSpec, ToothThickness};
-use nalgebra::{Point2, Rotation2};
+use nalgebra::Point2;
 
 mod common;
+#[path = "common/ring.rs"]
+mod ring;
+
+use ring::full_ring;
 
 const WIDTH: f64 = 16e-3;
 const COARSE: MeshDensity = MeshDensity { order: 2, density: 0.3 };
@@ -38,28 +40,6 @@ fn body(gear: &Gear, face: FaceModel, bore: BoreCondition, mesh: MeshDensity) ->
 
 fn all() -> ModesOptions {
     ModesOptions { count: 100_000, tolerance: 1e-12 }
-}
-
-/// All sectors as one mesh: nodes `(sector, node) -> number`, nodes on shared cuts merged.
-fn full_ring(sector: &SectorMesh, teeth: usize) -> (PlaneMesh, Vec<Vec<u32>>) {
-    let lower_of: HashMap<u32, u32> = sector.upper_cut.iter().copied().zip(sector.lower_cut.iter().copied()).collect();
-    let mut numbers = vec![vec![u32::MAX; sector.mesh.nodes.len()]; teeth];
-    let mut nodes = Vec::new();
-    for (tooth, own) in numbers.iter_mut().enumerate() {
-        for (node, number) in own.iter_mut().enumerate().filter(|(node, _)| !lower_of.contains_key(&(*node as u32))) {
-            *number = nodes.len() as u32;
-            let turned = Rotation2::new(sector.sector_angle * tooth as f64) * sector.mesh.nodes[node].coords;
-            nodes.push(Point2::from(turned));
-        }
-    }
-    for tooth in 0..teeth {
-        for (&upper, &lower) in &lower_of {
-            numbers[tooth][upper as usize] = numbers[(tooth + 1) % teeth][lower as usize];
-        }
-    }
-    let connectivity =
-        numbers.iter().flat_map(|own| sector.mesh.connectivity.iter().map(|&node| own[node as usize])).collect();
-    (PlaneMesh { order: sector.mesh.order, nodes, connectivity }, numbers)
 }
 
 /// The whole gear as one body: eigenpairs by dense algebra, and what is needed to compare with it.
@@ -230,6 +210,32 @@ fn invariant_all_modes_give_the_static_compliance() {
                 assert!(few[(i, i)] >= 0.0 && few[(i, i)] <= all[(i, i)] * (1.0 + 1e-9));
             }
         }
+    }
+}
+
+/// Counting teeth from another one changes coordinates, not the motion.
+#[test]
+fn invariant_motion_does_not_depend_on_which_tooth_is_first() {
+    // an even number of teeth: patterns that alternate from tooth to tooth have no twin
+    let gear = common::gear(12);
+    let body = body(&gear, FaceModel::Solid { order: 1 }, BoreCondition::RigidHub, SMALL);
+    let modes = GearModes::new(&body, &all()).unwrap();
+    let coordinates: Vec<f64> = (0..modes.modes.len()).map(|k| (1.0 + k as f64).sin()).collect();
+    let station = [body.sector(0).station(1.1 * gear.base_radius() * 0.35).unwrap()];
+    for shift in [1, 5, -7, 12] {
+        let seen = modes.seen_from(shift, &coordinates);
+        for family in 0..body.families.len() {
+            let read = |tooth: i32, coordinates: &[f64]| -> f64 {
+                let openings = modes.at_stations(family, (tooth, &station));
+                modes.of_family(family).zip(0..).map(|(mode, row)| openings[(row, 0)] * coordinates[mode]).sum()
+            };
+            for tooth in 0..12 {
+                let (seen, own) = (read(tooth, &seen), read(tooth + shift, &coordinates));
+                assert!((seen - own).abs() < 1e-9 * (seen.abs() + 1.0), "family {family}, {shift}: {seen} {own}");
+            }
+        }
+        let back = modes.seen_from(-shift, &seen);
+        assert!(back.iter().zip(&coordinates).all(|(a, b)| (a - b).abs() < 1e-12), "{shift}");
     }
 }
 

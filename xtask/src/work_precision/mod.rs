@@ -1,6 +1,7 @@
 //! Error against run time of the numerics on offer, with the defaults marked.
 
 mod damage;
+mod dynamics;
 mod dynamics_lumped;
 mod hums;
 mod report;
@@ -13,6 +14,8 @@ pub enum Study {
     Statics,
     /// Increase of the transmission error by a crack and a pit, stress-intensity factor.
     Damage,
+    /// Transmission error in motion, difference signal of a pit.
+    Dynamics,
     /// Integration methods of the lumped-parameter dynamics.
     DynamicsLumped,
     /// Interpolation of synchronous averages, windows and segments of spectra.
@@ -24,6 +27,7 @@ pub fn run(study: Study) -> anyhow::Result<()> {
     match study {
         Study::Statics => statics::run(),
         Study::Damage => damage::run(),
+        Study::Dynamics => dynamics::run(),
         Study::DynamicsLumped => dynamics_lumped::run(),
         Study::Hums => hums::run(),
     }

@@ -25,6 +25,13 @@ impl PairModes {
         &self.gears[body]
     }
 
+    /// Modal coordinates or forces of both gears with teeth counted from those `pairs` tooth pairs further on: [`GearModes::seen_from`].
+    pub fn seen_from(&self, pairs: i32, tooth_steps: [i32; 2], coordinates: &[f64]) -> Vec<f64> {
+        let (pinion, wheel) = coordinates.split_at(self.gears[0].modes.len().min(coordinates.len()));
+        let of = |index: usize, own: &[f64]| self.gears[index].seen_from(pairs * tooth_steps[index], own);
+        [of(0, pinion), of(1, wheel)].concat()
+    }
+
     /// Opening of every cell of a position by unit modal coordinates, cells x modes (pinion's, then wheel's): a flank that moves inward opens.
     pub fn openings(&self, settled: &Settled, model: &PairModel) -> Result<Mat<f64>, FecmError> {
         let grid = &settled.grid;

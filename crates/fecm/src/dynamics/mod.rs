@@ -12,6 +12,10 @@
 //! Left out: friction, Coriolis and centrifugal terms of the elastic motion in the turning frame, inertia coupling between hub translations and modes.
 
 mod flank;
+#[cfg(test)]
+mod full_fe;
+#[cfg(test)]
+mod impact;
 mod impulse;
 mod integrator;
 mod operator;

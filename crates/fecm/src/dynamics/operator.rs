@@ -69,8 +69,8 @@ pub(super) struct Operator {
     /// Static cell forces (N).
     pub static_forces: Vec<f64>,
     pub memory: FactorMemory,
-    /// Geometry for pressure snapshots.
-    rolls: Vec<[f64; 2]>,
+    /// Roll distances of every row on pinion and wheel (m).
+    pub rolls: Vec<[f64; 2]>,
     face: Vec<f64>,
     cell: [f64; 2],
     mirrored: bool,
@@ -155,7 +155,7 @@ impl Operator {
         })
     }
 
-    /// Generalised force `(R, Phi)^T f`.
+    /// Generalised force `(R, Phi)^T f`; modes as the operator's own teeth feel them.
     pub fn generalised(&self, forces: &[f64]) -> Vec<f64> {
         let of = |matrix: &Mat<f64>, k: usize| -> f64 {
             matrix.col_as_slice(k).iter().zip(forces).map(|(r, f)| r * f).sum()

@@ -93,6 +93,7 @@ impl<'a> PairDynamics<'a> {
         let pair = self.model.pairing();
         let mut stepper = Stepper {
             system: &self.system,
+            modes: &self.modes,
             weights,
             matrix,
             schedule,
@@ -265,6 +266,7 @@ pub struct SteadySpec {
 /// What one step uses.
 struct Stepper<'a> {
     system: &'a System,
+    modes: &'a PairModes,
     weights: Weights,
     matrix: Arc<StepMatrix>,
     schedule: Schedule<'a>,
@@ -334,7 +336,10 @@ impl Stepper<'_> {
                 let operator = self.schedule.operator(&place)?;
                 match initial {
                     InitialState::Unloaded => (operator.no_load, vec![0.0; size]),
-                    _ => (operator.rotation, operator.generalised(&operator.static_forces)),
+                    _ => {
+                        let (rotation, own) = (operator.rotation, operator.generalised(&operator.static_forces));
+                        (rotation, self.on_bodies(own, &place))
+                    }
                 }
             }
         };
@@ -423,9 +428,9 @@ impl Stepper<'_> {
     /// Solves the contact at the end of a step, on grids as wide as it needs.
     fn contact(&mut self, step: i64, right: &[f64]) -> Result<Contact, FecmError> {
         let rigid = self.system.rigid_count();
-        let modal: Vec<f64> = self.matrix.modal.iter().zip(&right[rigid..]).map(|(a, b)| b / a).collect();
+        let free: Vec<f64> = self.matrix.modal.iter().zip(&right[rigid..]).map(|(a, b)| b / a).collect();
         let load: Vec<f64> = (0..rigid)
-            .map(|i| right[i] - modal.iter().enumerate().map(|(k, m)| self.matrix.coupling[(i, k)] * m).sum::<f64>())
+            .map(|i| right[i] - free.iter().enumerate().map(|(k, m)| self.matrix.coupling[(i, k)] * m).sum::<f64>())
             .collect();
         let at = self.operator_step(step);
         let mut watch_back = false;
@@ -433,6 +438,7 @@ impl Stepper<'_> {
         loop {
             let place = self.schedule.place(at, level, false);
             let back_place = self.schedule.place(at, 0, true);
+            let modal = self.at_operator(&free, &place);
             // operators are taken out of the schedule one at a time: their memories travel with them
             let mut blocks = vec![self.schedule.take(&place)?];
             if watch_back {
@@ -443,7 +449,7 @@ impl Stepper<'_> {
                 let drive = &solution.forces[0];
                 let closing = self.closing_rotation(&solution.coordinates);
                 let wide = blocks[0].is_crowded(drive) || closing > blocks[0].most;
-                let mut generalised = blocks[0].generalised(drive);
+                let mut generalised = self.on_bodies(blocks[0].generalised(drive), &place);
                 let mut back = 0.0;
                 if let (Some(operator), Some(forces)) = (blocks.get(1), solution.forces.get(1)) {
                     back = forces.iter().sum();
@@ -501,9 +507,21 @@ impl Stepper<'_> {
     fn whole_energy(&mut self, state: &DynamicsState) -> Result<f64, FecmError> {
         let (rigid, bodies) = (self.system.rigid_count(), self.body_energy(state));
         let place = self.schedule.place(self.operator_step(state.step), ENERGY_LEVEL, false);
-        let operator = self.schedule.operator(&place)?;
         let (q, eta) = state.position.split_at(rigid);
-        Ok(bodies + operator.energy_at(q, eta, &self.matrix.modal, self.system)?)
+        let eta = self.at_operator(eta, &place);
+        let operator = self.schedule.operator(&place)?;
+        Ok(bodies + operator.energy_at(q, &eta, &self.matrix.modal, self.system)?)
+    }
+
+    /// Modal coordinates as an operator made at other teeth sees them.
+    fn at_operator(&self, modal: &[f64], place: &Place) -> Vec<f64> {
+        self.modes.seen_from(place.shift, self.schedule.pairing().tooth_steps(), modal)
+    }
+
+    /// Generalised forces from an operator on the bodies: modal ones turned back to the teeth that carry them.
+    fn on_bodies(&self, generalised: Vec<f64>, place: &Place) -> Vec<f64> {
+        let (rigid, modal) = generalised.split_at(self.system.rigid_count());
+        [rigid, &self.modes.seen_from(-place.shift, self.schedule.pairing().tooth_steps(), modal)].concat()
     }
 
     /// Adds a step to the energies. With average acceleration the balance closes to rounding.

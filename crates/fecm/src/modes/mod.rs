@@ -271,6 +271,32 @@ impl GearModes {
         fields.col_as_slice(0).to_vec()
     }
 
+    /// Coordinates of the same motion with teeth counted from another one: tooth `k` under the result moves as tooth `k + tooth` under
+    /// `coordinates`. Twins turn into each other like the components of a vector, so of modal forces the same holds, and `-tooth` leads back.
+    #[must_use]
+    pub fn seen_from(&self, tooth: i32, coordinates: &[f64]) -> Vec<f64> {
+        let mut seen = Vec::with_capacity(coordinates.len());
+        for (k, (mode, &own)) in self.modes.iter().zip(coordinates).enumerate() {
+            let (sine, cosine) = self.angle(mode, tooth).sin_cos();
+            // sorted by frequency, diameters and shape, twins stand side by side, the even one first
+            let twin = match mode.twin {
+                Twin::Even => k + 1,
+                Twin::Odd => k.wrapping_sub(1),
+            };
+            let is_twin = |other: &&Mode| {
+                let key = |mode: &Mode| (mode.family, mode.nodal_diameter, mode.shape);
+                key(other) == key(mode) && other.twin != mode.twin
+            };
+            let other = match self.modes.get(twin).filter(is_twin) {
+                Some(_) => coordinates.get(twin).copied().unwrap_or(0.0),
+                None => 0.0,
+            };
+            let sign = if mode.twin == Twin::Even { 1.0 } else { -1.0 };
+            seen.push(cosine * own + sign * sine * other);
+        }
+        seen
+    }
+
     fn angle(&self, mode: &Mode, tooth: i32) -> f64 {
         // whole turns out first: rounding must not grow with the tooth number
         let steps = (i64::from(mode.nodal_diameter) * i64::from(tooth)).rem_euclid(i64::from(self.teeth));

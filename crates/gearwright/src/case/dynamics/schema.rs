@@ -107,8 +107,9 @@ pub struct Rotor {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-18, max = 1e12))]
     pub transverse_inertia_kg_m2: Option<f64>,
-    /// Elastic modes of the gear kept in motion, lowest first; 0 for a gear that deforms as it would at rest. The inertia must hold that of the gear
-    /// itself, and the bore be held by a hub.
+    /// Elastic modes of the gear kept in motion, lowest first; 0 for a gear that deforms as it would at rest: enough where most of the inertia is not
+    /// the gear's own. A gear that carries little else wants 20 (docs/dynamics.md). The inertia must hold that of the gear itself, and the bore be
+    /// held by a hub.
     #[serde(default)]
     #[schemars(range(min = 0, max = 2000))]
     pub elastic_modes: u32,
@@ -188,7 +189,8 @@ pub struct Run {
     /// Mesh frequency (Hz): a number, or a list.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh_frequency_hz: Option<Values>,
-    /// Steps of time in a mesh cycle.
+    /// Steps of time in a mesh cycle. What counts is steps in a natural period: 50 a mesh cycle are enough near and above the natural frequency; far
+    /// below it take some 60 times natural over mesh frequency (docs/dynamics.md).
     #[schemars(range(min = 8, max = 10000))]
     pub steps_per_mesh_cycle: u32,
     /// Mesh cycle at which the record begins.
@@ -281,7 +283,8 @@ pub struct Numerics {
     /// Contact cells along the face (3d).
     #[schemars(range(min = 1, max = 400))]
     pub face_cells: u32,
-    /// Integration in time: "newmark" (average acceleration: no damping of its own) or "generalized-alpha" (damps what a step cannot follow).
+    /// Integration in time: "newmark" (average acceleration: no damping of its own, so forces of bearings too stiff for the step ring) or
+    /// "generalized-alpha" (damps what a step cannot follow).
     pub integrator: Integrator,
     /// Spectral radius of generalized-alpha at infinite frequency: 1 damps nothing, 0 all of it in one step.
     #[schemars(range(min = 0.0, max = 1.0))]
