@@ -138,10 +138,13 @@ pub fn crack_opening(title: &str, series: &[(&str, &[PositionResult], &Stresses)
     }
 }
 
+/// A number of a severity, if it has it.
+type OfEffect = fn(&Effect) -> Option<f64>;
+
 /// Largest stress-intensity factors over the length of the longest crack; `None` unless there is a sweep of lengths.
 #[must_use]
 pub fn crack_growth(title: &str, effects: &[Effect]) -> Option<Chart> {
-    let modes: [(&str, fn(&Effect) -> Option<f64>); 2] =
+    let modes: [(&str, OfEffect); 2] =
         [("K_I", |effect| effect.k_one_max_mpa_sqrt_m), ("|K_II|", |effect| effect.k_two_max_mpa_sqrt_m)];
     let lines = modes.iter().enumerate().map(|(index, (name, value))| {
         let points = by_length(effects, value);
@@ -154,7 +157,7 @@ pub fn crack_growth(title: &str, effects: &[Effect]) -> Option<Chart> {
 /// lengths and root stresses were asked for.
 #[must_use]
 pub fn root_tension_growth(title: &str, healthy: [Option<f64>; 2], effects: &[Effect]) -> Option<Chart> {
-    let gears: [(&str, fn(&Effect) -> Option<f64>); 2] =
+    let gears: [(&str, OfEffect); 2] =
         [("pinion", |effect| effect.pinion_root_tension_max_mpa), ("gear", |effect| effect.gear_root_tension_max_mpa)];
     let lines = gears.iter().zip(healthy).enumerate().map(|(index, ((name, value), healthy))| {
         let start = healthy.map(|stress| (0.0, stress)).into_iter();
@@ -165,7 +168,7 @@ pub fn root_tension_growth(title: &str, healthy: [Option<f64>; 2], effects: &[Ef
 }
 
 /// A quantity over the length of the longest crack (mm).
-fn by_length(effects: &[Effect], value: &fn(&Effect) -> Option<f64>) -> Vec<(f64, f64)> {
+fn by_length(effects: &[Effect], value: &OfEffect) -> Vec<(f64, f64)> {
     effects.iter().filter_map(|effect| effect.crack_length_mm.zip(value(effect))).collect()
 }
 
