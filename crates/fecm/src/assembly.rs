@@ -10,6 +10,7 @@
 
 use crate::element::PairIntegrals;
 use crate::face::{FaceBasis, FaceIntegrals};
+use crate::face_part::FaceFunctions;
 
 /// Node-pair blocks of an extruded body: all face integrals tabulated once.
 pub struct PairStiffness {
@@ -26,13 +27,26 @@ impl PairStiffness {
     /// Tables for one face basis.
     #[must_use]
     pub fn new(basis: &FaceBasis) -> Self {
+        Self::tabulated(basis, |a, b| basis.integrals(a, b))
+    }
+
+    /// Tables for other functions in the place of those of the basis, by degree: those of the first node, those of the second.
+    #[must_use]
+    pub fn between(basis: &FaceBasis, first: &FaceFunctions, second: &FaceFunctions) -> Self {
+        let most = basis.dofs().iter().map(|dof| dof.degree).max().unwrap_or(0);
+        let table: Vec<Vec<FaceIntegrals>> =
+            (0..=most).map(|a| (0..=most).map(|b| first.integrals(a, second, b)).collect()).collect();
+        Self::tabulated(basis, |a, b| table[a][b])
+    }
+
+    fn tabulated(basis: &FaceBasis, integrals: impl Fn(usize, usize) -> FaceIntegrals) -> Self {
         let dofs = basis.dofs();
         let block = dofs.len();
         let mut face = Vec::with_capacity(block * block);
         let mut coupled = Vec::new();
         for (i, a) in dofs.iter().enumerate() {
             for (j, b) in dofs.iter().enumerate() {
-                let integrals = basis.integrals(a.degree, b.degree);
+                let integrals = integrals(a.degree, b.degree);
                 let sum = integrals.value_value.abs()
                     + integrals.value_slope.abs()
                     + integrals.slope_value.abs()

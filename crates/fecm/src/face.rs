@@ -38,6 +38,8 @@ pub enum Parity {
     Symmetric,
     /// `u_x`, `u_y` odd in `z`, `u_z` even.
     Antisymmetric,
+    /// Both at once, coupled: for bodies that are not their own image about mid-face.
+    Both,
 }
 
 /// One displacement function along the face.
@@ -83,16 +85,17 @@ impl FaceBasis {
             FaceModel::PlaneStrain => (lambda, None),
             FaceModel::Solid { order } => (lambda, Some(order)),
         };
-        let (plane_first, axial_first) = match parity {
-            Parity::Symmetric => (0, 1),
-            Parity::Antisymmetric => (1, 0),
+        let (plane_first, axial_first, step) = match parity {
+            Parity::Symmetric => (0, 1, 2),
+            Parity::Antisymmetric => (1, 0, 2),
+            Parity::Both => (0, 0, 1),
         };
         if order.is_none() && parity == Parity::Antisymmetric {
             return None;
         }
-        let plane_degrees: Vec<usize> = (plane_first..=order.unwrap_or(0)).step_by(2).collect();
+        let plane_degrees: Vec<usize> = (plane_first..=order.unwrap_or(0)).step_by(step).collect();
         let plane = plane_degrees.iter().flat_map(|&degree| [0, 1].map(|component| FaceDof { component, degree }));
-        let axial = order.map(|order| (axial_first..=order).step_by(2)).into_iter().flatten();
+        let axial = order.map(|order| (axial_first..=order).step_by(step)).into_iter().flatten();
         let dofs = plane.chain(axial.map(|degree| FaceDof { component: 2, degree })).collect();
         Some(Self { width, dofs, plane_degrees, lambda, shear })
     }

@@ -51,6 +51,7 @@ pub mod dynamics;
 pub mod element;
 pub mod error;
 pub mod face;
+pub mod face_part;
 pub mod fracture;
 pub mod functional;
 pub mod halfspace;

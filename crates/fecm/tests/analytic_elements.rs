@@ -57,6 +57,7 @@ impl Block {
             retained: boundary.iter().map(|&n| (n, 0.0)).collect(),
             fixed: Vec::new(),
             springs: None,
+            rich: &[],
         };
         let condensed = CondensedBody::new(&body, basis).unwrap();
         let block = basis.block();
@@ -204,6 +205,7 @@ fn analytic_thick_ring_under_pressure() {
             retained: retained.collect(),
             fixed: Vec::new(),
             springs: Some((1e-9 * e / outer, &springs)),
+            rich: &[],
         };
         let condensed = CondensedBody::new(&body, &basis).unwrap();
         let mut load = Mat::zeros(condensed.interior_size(), 1);
@@ -269,6 +271,7 @@ fn analytic_cantilever_with_parabolic_end_shear() {
         retained: held.iter().map(|&n| (n, 0.0)).collect(),
         fixed: Vec::new(),
         springs: None,
+        rich: &[],
     };
     let condensed = CondensedBody::new(&body, &basis).unwrap();
     let mut load = Mat::zeros(condensed.interior_size(), 1);

@@ -91,6 +91,7 @@ fn invariant_cyclic_condensation_equals_the_full_gear() {
                 retained: Vec::new(),
                 fixed: if spring.is_none() { rim.concat() } else { Vec::new() },
                 springs: spring.map(|k| (k, rim.as_slice())),
+                rich: &[],
             },
             &basis,
         )

@@ -64,7 +64,8 @@ impl FullGear {
         let fixed = if spring.is_none() { rim.concat() } else { Vec::new() };
         let springs = spring.map(|k| (k, rim.as_slice()));
         let condensed =
-            CondensedBody::new(&Substructure { mesh: &mesh, retained: Vec::new(), fixed, springs }, &basis).unwrap();
+            CondensedBody::new(&Substructure { mesh: &mesh, retained: Vec::new(), fixed, springs, rich: &[] }, &basis)
+                .unwrap();
         let mass = BodyMass::new(&mesh, &basis, Material::STEEL.density);
         let mut full = Self { numbers, mesh, basis, condensed, mass, frequencies: Vec::new() };
         full.frequencies = full.solve();
@@ -380,7 +381,7 @@ fn order_frequency_of_a_ring_in_torsion() {
         let sector = ring_sector(inner, outer, teeth as u32, order, layers);
         let (mesh, numbers) = full_ring(&sector, teeth);
         let fixed = numbers.iter().flat_map(|own| sector.rim[0].iter().map(|&node| own[node as usize])).collect();
-        let body = Substructure { mesh: &mesh, retained: Vec::new(), fixed, springs: None };
+        let body = Substructure { mesh: &mesh, retained: Vec::new(), fixed, springs: None, rich: &[] };
         let condensed = CondensedBody::new(&body, &basis).unwrap();
         let mass = BodyMass::new(&mesh, &basis, Material::STEEL.density);
         let mut field = RigidMotion::AboutZ.field(&mesh.nodes, &basis);

@@ -6,6 +6,7 @@
 
 use nalgebra::Vector2;
 
+use crate::error::GeometryError;
 use crate::gear::{FlankSide, Gear};
 use crate::modification::MeasuredDeviation;
 
@@ -18,8 +19,96 @@ pub enum CrackLength {
     Length(f64),
 }
 
-/// A crack through the whole face.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// How the length of a crack varies along the face: straight lines between given places, level beyond the first and the last.
+///
+/// Lengths are shares of the crack's own, which it has where it is longest.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CrackFront {
+    /// Face position (m, 0 at mid-face) and share of the length, the largest 1; none for a crack of one length.
+    points: Vec<[f64; 2]>,
+}
+
+impl CrackFront {
+    /// A front from face positions (m, 0 at mid-face, ascending) and lengths there in any one unit; also the longest of these lengths. Without a
+    /// length above 0 there is no crack, and the front is that of a through crack.
+    ///
+    /// # Errors
+    /// [`GeometryError::OutOfRange`] for fewer than two places, places that do not ascend, lengths below 0.
+    pub fn from_lengths(places: &[(f64, f64)]) -> Result<(Self, f64), GeometryError> {
+        let fault = |parameter, value, allowed: &str| {
+            Err(GeometryError::OutOfRange { parameter, value, allowed: allowed.to_owned() })
+        };
+        if places.len() < 2 {
+            return fault("number of places of a crack front", places.len() as f64, "two or more");
+        }
+        if let Some(&(face, _)) = places.iter().find(|place| !place.0.is_finite()) {
+            return fault("face position of a crack front", face, "a number of metres");
+        }
+        if let Some(pair) = places.windows(2).find(|pair| pair[0].0 >= pair[1].0) {
+            return fault("face position of a crack front", pair[1].0, "positions that ascend");
+        }
+        if let Some(&(_, length)) = places.iter().find(|place| !(place.1 >= 0.0 && place.1.is_finite())) {
+            return fault("length along a crack front", length, "0 or more");
+        }
+        let longest = places.iter().map(|place| place.1).fold(0.0, f64::max);
+        let varies = places.iter().any(|place| place.1 != longest);
+        let points =
+            if varies { places.iter().map(|&(face, length)| [face, length / longest]).collect() } else { Vec::new() };
+        Ok((Self { points }, longest))
+    }
+
+    /// Whether the length is the same all along the face.
+    #[must_use]
+    pub fn is_through(&self) -> bool {
+        self.points.is_empty()
+    }
+
+    /// Length at a face position (m), as a share of the longest.
+    #[must_use]
+    pub fn share_at(&self, face: f64) -> f64 {
+        let (Some(first), Some(last)) = (self.points.first(), self.points.last()) else { return 1.0 };
+        if face <= first[0] {
+            return first[1];
+        }
+        if face >= last[0] {
+            return last[1];
+        }
+        let next = self.points.partition_point(|point| point[0] <= face);
+        let ([z0, a], [z1, b]) = (self.points[next - 1], self.points[next]);
+        a + (b - a) * (face - z0) / (z1 - z0)
+    }
+
+    /// Places on a face of a width (m), its ends among them, between which the length changes linearly: face position (m) and share.
+    #[must_use]
+    pub fn polyline(&self, width: f64) -> Vec<[f64; 2]> {
+        let half = 0.5 * width;
+        let inner = self.points.iter().filter(|point| point[0].abs() < half).copied();
+        std::iter::once([-half, self.share_at(-half)]).chain(inner).chain([[half, self.share_at(half)]]).collect()
+    }
+
+    /// The parts of a face of a width (m) along which the crack is longer than a share of its length: ascending, from and to (m).
+    #[must_use]
+    pub fn open_parts(&self, width: f64, share: f64) -> Vec<[f64; 2]> {
+        let mut parts: Vec<[f64; 2]> = Vec::new();
+        for pair in self.polyline(width).windows(2) {
+            let ([z0, a], [z1, b]) = (pair[0], pair[1]);
+            if a.max(b) <= share {
+                continue;
+            }
+            let crossing = || z0 + (z1 - z0) * ((share - a) / (b - a)).clamp(0.0, 1.0);
+            let part = [if a > share { z0 } else { crossing() }, if b > share { z1 } else { crossing() }];
+            match parts.last_mut() {
+                // the crack is open where two lines meet above the share
+                Some(last) if last[1] == part[0] && a > share => last[1] = part[1],
+                _ => parts.push(part),
+            }
+        }
+        parts
+    }
+}
+
+/// A root crack.
+#[derive(Debug, Clone, PartialEq)]
 pub struct RootCrack {
     /// Flank at whose fillet it starts.
     pub side: FlankSide,
@@ -28,15 +117,24 @@ pub struct RootCrack {
     /// Angle between the crack and the tooth's centre line, toward the axis (rad, a quarter turn is straight across); `None`: along the
     /// chord to the other fillet.
     pub direction: Option<f64>,
-    /// Its length; 0 is no crack.
+    /// Its length, where it is longest; 0 is no crack.
     pub length: CrackLength,
+    /// How its length varies along the face.
+    pub front: CrackFront,
 }
 
 impl RootCrack {
-    /// A crack along the chord of a fraction of its length.
+    /// A crack along the chord of a fraction of its length, the same all along the face.
     #[must_use]
     pub fn along_chord(side: FlankSide, fraction: f64) -> Self {
-        Self { side, start_tangent: None, direction: None, length: CrackLength::Chord(fraction) }
+        let length = CrackLength::Chord(fraction);
+        Self { side, start_tangent: None, direction: None, length, front: CrackFront::default() }
+    }
+
+    /// Whether there is a crack, and its length varies along the face.
+    #[must_use]
+    pub fn varies_along_face(&self) -> bool {
+        !self.is_empty() && !self.front.is_through()
     }
 
     /// Whether there is nothing of it.
@@ -276,7 +374,8 @@ impl Damage {
     #[must_use]
     pub fn is_symmetric(&self) -> bool {
         match self {
-            Self::Crack(_) => true,
+            // one that varies is treated as lopsided even where it is not
+            Self::Crack(crack) => !crack.varies_along_face(),
             Self::Pit(pit) => pit.is_symmetric(),
             Self::Wear(wear) => wear.is_symmetric(),
             Self::BrokenCorner(corner) => corner.is_empty(),
@@ -296,6 +395,31 @@ pub struct ToothDamage {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn analytic_open_parts_of_a_crack_front() {
+        let parts = |places: &[(f64, f64)], share| CrackFront::from_lengths(places).unwrap().0.open_parts(4.0, share);
+        // a corner crack, a hump, a valley, a level beyond the table
+        assert_eq!(parts(&[(-2.0, 0.0), (2.0, 3.0)], 0.25), vec![[-1.0, 2.0]]);
+        assert_eq!(parts(&[(-2.0, 0.0), (0.0, 5.0), (2.0, 0.0)], 0.5), vec![[-1.0, 1.0]]);
+        assert_eq!(parts(&[(-2.0, 4.0), (0.0, 0.0), (2.0, 4.0)], 0.5), vec![[-2.0, -1.0], [1.0, 2.0]]);
+        assert_eq!(parts(&[(-1.0, 0.0), (0.0, 2.0)], 0.5), vec![[-0.5, 2.0]]);
+        assert_eq!(parts(&[(-2.0, 4.0), (0.0, 2.0), (2.0, 4.0)], 0.5), vec![[-2.0, 0.0], [0.0, 2.0]]);
+        assert_eq!(parts(&[(-2.0, 4.0), (0.0, 2.0), (2.0, 4.0)], 0.4), vec![[-2.0, 2.0]]);
+        assert!(parts(&[(-2.0, 4.0), (2.0, 3.0)], 1.0).is_empty());
+        // the table may be longer than the face
+        let (front, longest) = CrackFront::from_lengths(&[(-4.0, 0.0), (4.0, 8.0)]).unwrap();
+        assert_eq!((longest, front.share_at(0.0), front.polyline(4.0)), (8.0, 0.5, vec![[-2.0, 0.25], [2.0, 0.75]]));
+        // one length, no length, no front
+        let (same, length) = CrackFront::from_lengths(&[(-1.0, 3.0), (1.0, 3.0)]).unwrap();
+        assert!(same.is_through() && length == 3.0 && same.open_parts(4.0, 0.9) == vec![[-2.0, 2.0]]);
+        assert_eq!(CrackFront::from_lengths(&[(-1.0, 0.0), (1.0, 0.0)]).unwrap(), (CrackFront::default(), 0.0));
+        for bad in
+            [&[(0.0, 1.0)][..], &[(1.0, 1.0), (0.0, 2.0)], &[(0.0, -1.0), (1.0, 1.0)], &[(f64::NAN, 1.0), (1.0, 1.0)]]
+        {
+            assert!(CrackFront::from_lengths(bad).is_err(), "{bad:?}");
+        }
+    }
 
     #[test]
     fn analytic_area_of_an_ellipse_and_a_polygon() {

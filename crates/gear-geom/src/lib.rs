@@ -48,7 +48,9 @@ pub mod modification;
 pub mod outline;
 pub mod pair;
 
-pub use damage::{BrokenCorner, CrackLength, Damage, Pit, PitShape, ProfileMeasure, RootCrack, ToothDamage};
+pub use damage::{
+    BrokenCorner, CrackFront, CrackLength, Damage, Pit, PitShape, ProfileMeasure, RootCrack, ToothDamage,
+};
 pub use error::{GeometryError, GeometryErrors};
 pub use fillet::{Fillet, FilletSpec};
 pub use gear::{FlankSide, Gear, GearKind, GearSpec, ToothThickness};

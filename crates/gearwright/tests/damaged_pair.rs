@@ -146,6 +146,21 @@ fn impossible_damage_is_explained_at_its_line() {
             "[[damage]]\non = \"pinion\"\ncrack.length_percent = 120.0\n",
             &["case.toml:39", "crack.length_percent", "97"],
         ),
+        (
+            "plane-strain",
+            "[[damage]]\non = \"pinion\"\ncrack.length_percent = 20.0\ncrack.front_percent = [0.0, 100.0]\n",
+            &["front_percent", "3d"],
+        ),
+        (
+            "3d",
+            "[[damage]]\non = \"pinion\"\ncrack.length_percent = 20.0\ncrack.front_percent = [0.0, 50.0, 100.0]\n",
+            &["front_percent", "two values"],
+        ),
+        (
+            "3d",
+            "[[damage]]\non = \"pinion\"\ncrack.length_percent = 20.0\ncrack.front_percent = [0.0, 120.0]\n",
+            &["front_percent", "0 to 100", "120"],
+        ),
         ("3d", "[[damage]]\non = \"pinion\"\ncrack.length_mm = 50.0\n", &["case.toml:39", "crack", "chord"]),
         ("3d", "[[damage]]\non = \"pinion\"\ncrack.length_mm = 2.0\ncrack.start_tangent_deg = 1.0\n", &["tangent"]),
         (

@@ -70,6 +70,19 @@ pub struct BodyOptions {
     pub cracks: Vec<(i64, RootCrack)>,
 }
 
+impl BodyOptions {
+    /// Symmetry families that the body needs. A crack that varies along the face couples them.
+    fn parities(&self) -> &'static [Parity] {
+        if self.cracks.iter().any(|(_, crack)| crack.varies_along_face()) {
+            &[Parity::Both]
+        } else if self.antisymmetric {
+            &[Parity::Symmetric, Parity::Antisymmetric]
+        } else {
+            &[Parity::Symmetric]
+        }
+    }
+}
+
 /// One symmetry family of a gear.
 pub struct Family {
     /// Functions along the face.
@@ -104,8 +117,9 @@ pub struct GearBody {
     pub material: Material,
     /// Flank that carries the load.
     pub side: FlankSide,
-    /// Symmetry families: symmetric, and antisymmetric if asked for.
+    /// Symmetry families: symmetric, and antisymmetric if asked for; or both in one, where a crack varies along the face.
     pub families: Vec<Family>,
+    parities: &'static [Parity],
     healthy: Arc<ToothSector>,
     /// By tooth number in `0..teeth`.
     damaged: BTreeMap<i32, ToothSector>,
@@ -144,10 +158,10 @@ impl GearBody {
         material.validate()?;
         let teeth = gear.teeth() as i32;
         let (springs, soft) = springs(options.bore, material, gear)?;
-        let bases: Vec<FaceBasis> = [Parity::Symmetric, Parity::Antisymmetric]
-            .into_iter()
-            .filter(|&parity| parity == Parity::Symmetric || options.antisymmetric)
-            .filter_map(|parity| FaceBasis::new(options.face, parity, options.width, material))
+        let bases: Vec<FaceBasis> = options
+            .parities()
+            .iter()
+            .filter_map(|&parity| FaceBasis::new(options.face, parity, options.width, material))
             .collect();
         let healthy = ToothSector::new(gear, side, None, &bases, options, springs, name)?;
         let reach = options.reach.min((teeth as usize - 1) / 2) as i32;
@@ -155,6 +169,7 @@ impl GearBody {
             material: *material,
             side,
             families: Vec::new(),
+            parities: options.parities(),
             healthy: Arc::new(healthy),
             damaged: BTreeMap::new(),
             teeth,
@@ -182,9 +197,21 @@ impl GearBody {
     /// [`FecmError::Crack`] for cracks that cannot be or share a tooth; failed factorisations.
     pub fn with_cracks(&self, gear: &Gear, options: &BodyOptions, name: &'static str) -> Result<Self, FecmError> {
         let bases: Vec<FaceBasis> = self.families.iter().map(|family| family.basis.clone()).collect();
+        if self.parities != options.parities() {
+            return Self::new(gear, self.side, &self.material, options, name);
+        }
         let mut damaged = BTreeMap::new();
         for (tooth, crack) in options.cracks.iter().filter(|(_, crack)| !crack.is_empty()) {
             let tooth = tooth.rem_euclid(i64::from(self.teeth)) as i32;
+            if crack.varies_along_face() && !matches!(options.face, FaceModel::Solid { .. }) {
+                let allowed =
+                    "a plane model: only a three-dimensional one has a face along which a crack can vary".into();
+                return Err(FecmError::Crack {
+                    what: "length along the face on tooth",
+                    value: f64::from(tooth),
+                    allowed,
+                });
+            }
             let sector = ToothSector::new(gear, self.side, Some(crack), &bases, options, self.hub.springs, name)?;
             if damaged.insert(tooth, sector).is_some() {
                 let allowed = "one crack a tooth".to_owned();
@@ -206,6 +233,7 @@ impl GearBody {
             material: self.material,
             side: self.side,
             families,
+            parities: self.parities,
             healthy: Arc::clone(&self.healthy),
             damaged,
             teeth: self.teeth,

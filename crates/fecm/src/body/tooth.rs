@@ -29,8 +29,8 @@ pub struct Station {
 pub struct SectorFamily {
     /// The condensed sector.
     pub condensed: CondensedBody,
-    /// Interior row of every flank unknown: of slot `s` and function `d` at `s * functions + d`.
-    flank_rows: Vec<usize>,
+    /// Interior rows and weights of every flank unknown: of slot `s` and function `d` at `s * functions + d`.
+    flank: Vec<Vec<(usize, f64)>>,
     /// Depth displacements by unit flank loads with the cuts held.
     pub(super) base: Mat<f64>,
     /// Rows of `X` at the flank nodes: displacement by unit cut displacement.
@@ -96,26 +96,20 @@ impl ToothSector {
     fn condense(&self, basis: &FaceBasis, springs: Option<f64>) -> Result<SectorFamily, FecmError> {
         let condensed = CondensedBody::new(&self.shape.substructure(springs), basis)?;
         let functions = 2 * basis.plane_degrees().len();
-        let flank_rows = self.rows(&self.flank_slots, &condensed, functions);
-        let depth_rows = self.rows(&self.depth_slots, &condensed, functions);
-        let mut loads = Mat::zeros(condensed.interior_size(), flank_rows.len());
-        for (column, &row) in flank_rows.iter().enumerate() {
-            loads[(row, column)] = 1.0;
+        let flank = rows(&condensed, &self.flank_nodes, functions);
+        let depth = rows(&condensed, &self.depth_nodes(), functions);
+        let mut loads = Mat::zeros(condensed.interior_size(), flank.len());
+        for (column, terms) in flank.iter().enumerate() {
+            for &(row, weight) in terms {
+                loads[(row, column)] = weight;
+            }
         }
         condensed.solve_interior(&mut loads);
         let solution = condensed.retained_solution();
-        let base = Mat::from_fn(depth_rows.len(), flank_rows.len(), |i, j| loads[(depth_rows[i], j)]);
-        let at_flank = Mat::from_fn(flank_rows.len(), solution.ncols(), |i, j| solution[(flank_rows[i], j)]);
-        let at_depth = Mat::from_fn(depth_rows.len(), solution.ncols(), |i, j| solution[(depth_rows[i], j)]);
-        Ok(SectorFamily { condensed, flank_rows, base, at_flank, at_depth })
-    }
-
-    /// Interior rows of the in-plane unknowns of numbered nodes, in slot order.
-    fn rows(&self, slots: &HashMap<u32, usize>, sector: &CondensedBody, functions: usize) -> Vec<usize> {
-        let mut nodes: Vec<(usize, u32)> = slots.iter().map(|(&node, &slot)| (slot, node)).collect();
-        nodes.sort_unstable();
-        let rows = nodes.iter().flat_map(|&(_, node)| (0..functions).filter_map(move |d| sector.interior_row(node, d)));
-        rows.collect()
+        let base = read(&depth, loads.as_ref());
+        let at_flank = read(&flank, solution);
+        let at_depth = read(&depth, solution);
+        Ok(SectorFamily { condensed, flank, base, at_flank, at_depth })
     }
 
     /// Nodes of the loaded flank, in slot order.
@@ -130,11 +124,15 @@ impl ToothSector {
 
     /// Positions of the depth nodes, in slot order.
     pub(super) fn depth_points(&self) -> Vec<Point2<f64>> {
-        let mut points = vec![Point2::origin(); self.depth_slots.len()];
+        self.depth_nodes().iter().map(|&node| self.shape.mesh.nodes[node as usize]).collect()
+    }
+
+    fn depth_nodes(&self) -> Vec<u32> {
+        let mut nodes = vec![0; self.depth_slots.len()];
         for (&node, &slot) in &self.depth_slots {
-            points[slot] = self.shape.mesh.nodes[node as usize];
+            nodes[slot] = node;
         }
-        points
+        nodes
     }
 
     fn number_flank(&mut self) {
@@ -286,12 +284,12 @@ impl SectorFamily {
     /// Number of flank unknowns: in-plane ones of the loaded flank's nodes.
     #[must_use]
     pub fn flank_size(&self) -> usize {
-        self.flank_rows.len()
+        self.flank.len()
     }
 
     /// Rows of a matrix over interior unknowns that are flank unknowns.
     pub(crate) fn at_flank_of(&self, interior: MatRef<'_, f64>) -> Mat<f64> {
-        Mat::from_fn(self.flank_rows.len(), interior.ncols(), |i, j| interior[(self.flank_rows[i], j)])
+        read(&self.flank, interior)
     }
 
     /// Loads on flank unknowns as loads on all interior unknowns.
@@ -299,10 +297,25 @@ impl SectorFamily {
     pub fn interior_load(&self, flank: &Mat<f64>) -> Mat<f64> {
         let mut interior = Mat::zeros(self.condensed.interior_size(), flank.ncols());
         for j in 0..flank.ncols() {
-            for (i, &row) in self.flank_rows.iter().enumerate() {
-                interior[(row, j)] = flank[(i, j)];
+            for (i, terms) in self.flank.iter().enumerate() {
+                for &(row, weight) in terms {
+                    interior[(row, j)] += weight * flank[(i, j)];
+                }
             }
         }
         interior
     }
+}
+
+/// Interior rows and weights of the in-plane unknowns of nodes, those of one node after those of the one before.
+fn rows(condensed: &CondensedBody, nodes: &[u32], functions: usize) -> Vec<Vec<(usize, f64)>> {
+    let of_node = |&node: &u32| (0..functions).map(move |d| condensed.interior_terms(node, d));
+    nodes.iter().flat_map(of_node).filter(|terms| !terms.is_empty()).collect()
+}
+
+/// Weighted sums of rows of a matrix.
+fn read(rows: &[Vec<(usize, f64)>], matrix: MatRef<'_, f64>) -> Mat<f64> {
+    Mat::from_fn(rows.len(), matrix.ncols(), |i, j| {
+        rows[i].iter().map(|&(row, weight)| weight * matrix[(row, j)]).sum()
+    })
 }

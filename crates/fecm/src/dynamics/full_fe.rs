@@ -101,7 +101,7 @@ impl FullGear {
             .iter()
             .flat_map(|own| shape.rim.iter().flatten().map(|&node| own[node as usize]).collect::<Vec<u32>>())
             .collect();
-        let substructure = Substructure { mesh: &mesh, retained: Vec::new(), fixed, springs: None };
+        let substructure = Substructure { mesh: &mesh, retained: Vec::new(), fixed, springs: None, rich: &[] };
         let condensed = CondensedBody::new(&substructure, basis).unwrap();
         let n = condensed.interior_size();
         let mut rows = vec![0; n];

@@ -12,16 +12,18 @@
 //!
 //! The same walk serves internal gears: radii run the other way and the two sides change places.
 
+use std::collections::HashSet;
 use std::f64::consts::FRAC_PI_3;
 
-use gear_geom::{CrackLength, FlankSide, Gear, GearKind, HalfToothOutline, OutlineSegment, RootCrack};
+use gear_geom::{CrackFront, CrackLength, FlankSide, Gear, GearKind, HalfToothOutline, OutlineSegment, RootCrack};
 use nalgebra::{Point2, Rotation2, Vector2};
 
 use super::blocks::{BlockElements, BlockMesher, Edge, Vertex, geometric_breaks};
 use super::plane::PlaneMesh;
-use crate::condense::Substructure;
+use crate::condense::{RichNode, Substructure};
 use crate::element::ReferenceQuad;
 use crate::error::FecmError;
+use crate::face_part::FacePart;
 
 /// How finely a sector is meshed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,6 +101,50 @@ pub struct CrackFaces {
     pub length: f64,
     /// Length of the whole chord from fillet to fillet (m).
     pub chord: f64,
+    /// Where the length varies along the face: the nodes around the crack, with the functions along the face that they have of their own; those on
+    /// the face toward the tooth follow those on the other. Empty for a through crack.
+    pub rich: Vec<RichNode>,
+}
+
+/// Nodes within this share of the facewidth of a crack, but no farther than the crack is long, have more functions along the face.
+const ZONE: f64 = 0.25;
+
+/// Quadratic and cubic functions on each layer of the face.
+const LAYER_DEGREES: usize = 2;
+
+/// Parts of the face shorter than this share of it are left closed.
+const LEAST_PART: f64 = 1e-6;
+
+/// Nodes that open where the crack reaches them, and those around it that need more functions along the face.
+///
+/// A node halfway along the front is as good open as closed, so it counts as open where the crack reaches half of the way to the next node.
+fn rich_nodes(mesh: &PlaneMesh, nodes: &[Vec<u32>; 2], front: &CrackFront, width: f64, keep: &[u32]) -> Vec<RichNode> {
+    if front.is_through() {
+        return Vec::new();
+    }
+    let layer_degrees = LAYER_DEGREES;
+    let path: Vec<Point2<f64>> = nodes[0].iter().map(|&node| mesh.nodes[node as usize]).collect();
+    let total = polyline_length(&path);
+    let zone = (ZONE * width).min(total);
+    let (mut near_face, mut far_face) = (Vec::new(), Vec::new());
+    let mut along = 0.0;
+    for (k, pair) in path.windows(2).enumerate() {
+        let step = (pair[1] - pair[0]).norm();
+        let parts = front.open_parts(width, (along + 0.5 * step) / total).into_iter();
+        let parts = parts.filter(|ends| ends[1] - ends[0] > LEAST_PART * width);
+        let open: Vec<FacePart> = parts.map(|ends| FacePart::within(width, ends)).collect();
+        let [far, near] = [nodes[0][k], nodes[1][k]];
+        near_face.push(RichNode { node: near, follows: near, open: open.clone(), layer_degrees });
+        far_face.push(RichNode { node: far, follows: near, open, layer_degrees: 0 });
+        along += step;
+    }
+    let faces: HashSet<u32> = nodes.iter().flat_map(|face| &face[..path.len() - 1]).copied().collect();
+    let around = (0..mesh.nodes.len() as u32).filter(|node| {
+        let near = || path.iter().any(|point| (point - mesh.nodes[*node as usize]).norm() < zone);
+        !faces.contains(node) && !keep.contains(node) && near()
+    });
+    let around = around.map(|node| RichNode { node, follows: node, open: Vec::new(), layer_degrees });
+    near_face.into_iter().chain(far_face).chain(around).collect()
 }
 
 impl SectorMesh {
@@ -139,6 +185,7 @@ impl SectorMesh {
             retained: lower.chain(upper).collect(),
             fixed: if springs.is_none() { self.rim.concat() } else { Vec::new() },
             springs: springs.map(|stiffness| (stiffness, self.rim.as_slice())),
+            rich: self.crack.as_ref().map_or(&[], |crack| crack.rich.as_slice()),
         }
     }
 
@@ -214,7 +261,7 @@ impl<'a> SectorBuilder<'a> {
         let second = self.half(self.outward)?;
         let path = ChordPath::new(self.crack, &first, &second, self.outward)?;
         let across = self.across_breaks(&path);
-        let (above, below, crack) = self.chord(&path, &first, &second, &across);
+        let (above, below, faces) = self.chord(&path, &first, &second, &across);
         let tip = self.tip_edge(&first, &second, &across);
         let rim = self.rim_edge(&first, &second, &across);
         let tooth = self.mesher.block(&first.flank, &second.flank, &above, &tip);
@@ -225,6 +272,14 @@ impl<'a> SectorBuilder<'a> {
         let flanks = [&first, &second]
             .map(|half| FlankEdge { edges: self.split(&half.involute), arc_breaks: self.involute_breaks.clone() });
         let cuts = [&first.cut, &second.cut].map(|cut| cut.nodes().to_vec());
+        let mesh = self.mesher.finish();
+        let keep = [rim_edges.concat(), cuts.concat()].concat();
+        let crack = self.crack.zip(faces).map(|(crack, nodes)| CrackFaces {
+            rich: rich_nodes(&mesh, &nodes, &crack.front, self.gear.facewidth(), &keep),
+            nodes,
+            length: path.crack_length,
+            chord: path.chord_length,
+        });
         let ([lower_flank, upper_flank], [lower_cut, upper_cut]) =
             if self.outward > 0.0 { (flanks, cuts) } else { (reverse(flanks), reverse(cuts)) };
         Ok(SectorMesh {
@@ -235,7 +290,7 @@ impl<'a> SectorBuilder<'a> {
             rim: rim_edges,
             flanks: [lower_flank, upper_flank],
             tooth_elements: flatten(tooth),
-            mesh: self.mesher.finish(),
+            mesh,
         })
     }
 
@@ -273,8 +328,18 @@ impl<'a> SectorBuilder<'a> {
             }
             breaks
         };
-        let before = part(tip).into_iter().rev().map(|b| tip - b);
-        let after = part(1.0 - tip).into_iter().skip(1).map(|b| tip + b);
+        // a front that varies passes everywhere along the crack
+        let cracked = |length: f64| {
+            if self.crack.is_none_or(|crack| crack.front.is_through()) {
+                return part(length);
+            }
+            let count = self.density.count(2.0 + 8.0 * length);
+            even_breaks(count).iter().map(|b| length * b).collect()
+        };
+        let (first, second) =
+            if path.from_first { (cracked(tip), part(1.0 - tip)) } else { (part(tip), cracked(1.0 - tip)) };
+        let before = first.into_iter().rev().map(|b| tip - b);
+        let after = second.into_iter().skip(1).map(|b| tip + b);
         before.chain(after).collect()
     }
 
@@ -368,7 +433,7 @@ impl<'a> SectorBuilder<'a> {
         first: &Half,
         second: &Half,
         across: &[f64],
-    ) -> (Edge, Edge, Option<CrackFaces>) {
+    ) -> (Edge, Edge, Option<[Vec<u32>; 2]>) {
         let Some(tip) = path.crack_tip else {
             let edge = self.mesher.edge(first.junction, second.junction, across, |t| path.point(t));
             return (edge.clone(), edge, None);
@@ -390,7 +455,7 @@ impl<'a> SectorBuilder<'a> {
             let faces = [above.reversed().nodes().to_vec(), below.reversed().nodes().to_vec()];
             (rest.joined(&above), rest.joined(&below), faces)
         };
-        (above, below, Some(CrackFaces { nodes: faces, length: path.crack_length, chord: path.chord_length }))
+        (above, below, Some(faces))
     }
 
     /// From the first tip to the second: an arc through the ends of the involutes and the tip circle on the centre line. A tip round is

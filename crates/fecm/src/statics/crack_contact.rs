@@ -254,7 +254,7 @@ impl CrackOnTooth {
 
     fn new(body: &GearBody, member: usize, tooth: i32) -> Option<Self> {
         let sector = body.sector(tooth);
-        let crack = sector.shape.crack.as_ref()?;
+        let crack = sector.shape.crack.as_ref().filter(|crack| crack.rich.is_empty())?;
         let bases: Vec<_> = body.families.iter().map(|family| &family.basis).collect();
         let cells = CrackFaceCells::new(&sector.shape.mesh, [&crack.nodes[0], &crack.nodes[1]], &bases)?;
         let openings: Vec<Vec<Functional>> = bases.iter().map(|basis| cells.openings(basis)).collect();

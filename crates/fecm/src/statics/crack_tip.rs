@@ -1,6 +1,6 @@
 //! Stress-intensity factors of cracked teeth over the mesh cycle ([`crate::fracture`]).
 //!
-//! In three dimensions the factors are those of places along the crack front, with plane strain at the tip; at the ends of the face, where that is not
+//! Cracks of one length along the face only. In three dimensions the factors are those of places along the crack front, with plane strain at the tip; at the ends of the face, where that is not
 //! the state of the tip, they lose their meaning within a distance of the order of the zone's radius. A crack whose faces press on each other up to the tip
 //! has no `K_I`; what is left of it is the error of the pressure's concentration in nodes.
 
@@ -54,7 +54,7 @@ struct CrackReading {
 }
 
 impl PairModel {
-    /// Prepares all cracks of both gears for reading; there may be none.
+    /// Prepares all through cracks of both gears for reading; there may be none.
     #[must_use]
     pub fn crack_tip_reader(&self) -> CrackTipReader<'_> {
         let mut cracks = Vec::new();
@@ -62,7 +62,8 @@ impl PairModel {
             let faces = face_positions(self, body);
             for tooth in body.damaged_teeth() {
                 let sector = body.sector(tooth);
-                let Some(crack) = &sector.shape.crack else { continue };
+                // the zone of a reading is a cylinder along the face: a front that slants has none
+                let Some(crack) = sector.shape.crack.as_ref().filter(|crack| crack.rich.is_empty()) else { continue };
                 let sides = [crack.nodes[0].as_slice(), crack.nodes[1].as_slice()];
                 let Some(zone) = CrackTipZone::new(&sector.shape.mesh, sides, ZONE) else { continue };
                 let of_family = |family: &Family| -> Vec<Functional> {

@@ -95,8 +95,8 @@ fn recover(body: &GearBody, index: usize, loads: &[Option<SectorLoad<'_>>]) -> R
         let mut field = vec![0.0; shape.mesh.nodes.len() * block];
         for node in 0..shape.mesh.nodes.len() as u32 {
             for d in 0..block {
-                if let Some(row) = family.condensed.interior_row(node, d) {
-                    field[node as usize * block + d] = interior[(row, 0)];
+                for (row, weight) in family.condensed.interior_terms(node, d) {
+                    field[node as usize * block + d] += weight * interior[(row, 0)];
                 }
             }
         }

@@ -79,14 +79,18 @@ impl PairModel {
     }
 
     /// The same pair with other damage. What damage does not touch is shared: a healthy gear as a whole, of a cracked one all but the cracked
-    /// sectors. Damage that breaks the symmetry about mid-face of this model needs [`Self::new`] and gets it.
+    /// sectors. Damage that breaks the symmetry about mid-face of this model or of a gear needs [`Self::new`] and gets it.
     ///
     /// # Errors
     /// As [`Self::new`].
     pub fn with_damage(&self, damage: &[Vec<ToothDamage>; 2]) -> Result<Self, FecmError> {
         let options = PairModelOptions { damage: damage.clone(), ..self.options.clone() };
         options.validate()?;
-        if self.stats().symmetric && !options.damage_is_symmetric() {
+        let varies = |damage: &[Vec<ToothDamage>; 2]| {
+            damage.each_ref().map(|own| cracks_of(own).iter().any(|(_, crack)| crack.varies_along_face()))
+        };
+        let breaks_symmetry = self.stats().symmetric && !options.damage_is_symmetric();
+        if breaks_symmetry || varies(damage) != varies(&self.options.damage) {
             return Self::new(self.pairing.pair(), &options);
         }
         let started = Instant::now();
@@ -230,8 +234,8 @@ fn body_options(pairing: &Pairing, options: &PairModelOptions, symmetric: bool, 
 
 /// The cracks of any length among a gear's damage.
 pub(super) fn cracks_of(damage: &[ToothDamage]) -> Vec<(i64, RootCrack)> {
-    let cracks = damage.iter().filter_map(|damage| match damage.damage {
-        Damage::Crack(crack) if !crack.is_empty() => Some((damage.tooth, crack)),
+    let cracks = damage.iter().filter_map(|damage| match &damage.damage {
+        Damage::Crack(crack) if !crack.is_empty() => Some((damage.tooth, crack.clone())),
         _ => None,
     });
     cracks.collect()

@@ -197,9 +197,8 @@ impl FamilyReading {
         let mut on_cuts = Mat::<f64>::zeros(condensed.stiffness().nrows(), list.len());
         for (k, functional) in list.iter().enumerate() {
             for &(node, dof, weight) in functional.terms() {
-                if let Some(row) = condensed.interior_row(node, dof) {
-                    interior[(row, k)] += weight;
-                    continue;
+                for (row, part) in condensed.interior_terms(node, dof) {
+                    interior[(row, k)] += part * weight;
                 }
                 let Some(row) = condensed.retained_row(node, dof) else { continue };
                 if dof >= 2 * pairs {

@@ -38,7 +38,7 @@ impl Body {
         let size = self.mesh.nodes.iter().map(|p| p.coords.norm()).fold(0.0, f64::max);
         let all: Vec<Vec<u32>> = self.edges.concat();
         let springs = held.is_none().then_some((1e-9 * Material::STEEL.young_modulus / size, all.as_slice()));
-        let body = Substructure { mesh: &self.mesh, retained: vec![], fixed, springs };
+        let body = Substructure { mesh: &self.mesh, retained: vec![], fixed, springs, rich: &[] };
         let condensed = CondensedBody::new(&body, basis).unwrap();
         let line = LagrangeBasis::new(self.mesh.order);
         let (mut shapes, mut slopes) = (vec![0.0; self.mesh.order + 1], vec![0.0; self.mesh.order + 1]);

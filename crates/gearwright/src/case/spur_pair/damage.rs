@@ -4,7 +4,8 @@ use std::path::Path;
 
 use fecm::mesh::SectorMesh;
 use gear_geom::{
-    CrackLength, FlankSide, Gear, GearPair, MeasuredDeviation, Pit, PitShape, ProfileMeasure, RootCrack, ToothDamage,
+    CrackFront, CrackLength, FlankSide, Gear, GearPair, MeasuredDeviation, Pit, PitShape, ProfileMeasure, RootCrack,
+    ToothDamage,
 };
 use nalgebra::Vector2;
 
@@ -109,11 +110,20 @@ fn severity(
                     CrackSide::Drive => loaded,
                     CrackSide::Coast => loaded.other(),
                 };
-                let made = root_crack(crack, side, index, &mut fault);
+                let made = root_crack(crack, gear, side, index, &mut fault);
+                if made.as_ref().is_some_and(|crack| !solid && !crack.front.is_through()) {
+                    let message = "this crack varies along the face: it needs analysis.model = \"3d\"";
+                    fault("crack.front_percent", message.into());
+                }
+                if crack.side == CrackSide::Coast && made.as_ref().is_some_and(|crack| !crack.front.is_through()) {
+                    let message =
+                        "the faces of a crack that varies along the face carry no contact: only side = \"drive\"";
+                    fault("crack.side", message.into());
+                }
                 // the coarsest mesh tells whether the crack stays in the tooth
                 let density = fecm::MeshDensity { order: 1, density: 1.0 };
-                if let Some(Err(error)) = made.map(|crack| SectorMesh::with_crack(gear, &density, Some(&crack), "gear"))
-                {
+                let mesh = |crack| SectorMesh::with_crack(gear, &density, Some(crack), "gear");
+                if let Some(Err(error)) = made.as_ref().map(mesh) {
                     fault("crack", error.to_string());
                 }
                 made.map(gear_geom::Damage::Crack)
@@ -164,10 +174,11 @@ fn severity(
 
 fn label(damage: &Damage, index: usize) -> String {
     let show = |values: &Option<Values>| values.as_ref().map(|v| at(v, index));
-    if let Some(crack) = &damage.crack {
-        match (show(&crack.length_percent), show(&crack.length_mm)) {
-            (Some(percent), _) => format!("crack {percent} %"),
-            (_, length) => format!("crack {} mm", length.unwrap_or_default()),
+    if let Some(keys) = &damage.crack {
+        let crack = if keys.front_percent.is_empty() { "crack" } else { "crack up to" };
+        match (show(&keys.length_percent), show(&keys.length_mm)) {
+            (Some(percent), _) => format!("{crack} {percent} %"),
+            (_, length) => format!("{crack} {} mm", length.unwrap_or_default()),
         }
     } else if let Some(pit) = &damage.pit {
         match (show(&pit.width_mm), show(&pit.height_mm)) {
@@ -187,7 +198,41 @@ fn label(damage: &Damage, index: usize) -> String {
     }
 }
 
-fn root_crack(keys: &Crack, side: FlankSide, index: usize, fault: &mut impl FnMut(&str, String)) -> Option<RootCrack> {
+/// Front of a crack and its longest length as a share of the length that the case gives.
+fn crack_front(keys: &Crack, gear: &Gear, fault: &mut impl FnMut(&str, String)) -> Option<(CrackFront, f64)> {
+    let (percent, face) = (&keys.front_percent, &keys.front_face_mm);
+    if percent.is_empty() && face.is_empty() {
+        return Some((CrackFront::default(), 1.0));
+    }
+    let half = 0.5 * gear.facewidth() / MM;
+    let ends = [-half, half];
+    let face: &[f64] = if face.is_empty() { &ends } else { face };
+    if face.len() != percent.len() {
+        let places = face.len();
+        let allowed = "two values, one at each end of the face, or as many as front_face_mm";
+        fault("crack.front_percent", format!("{} values at {places} places: give {allowed}", percent.len()));
+        return None;
+    }
+    if let Some(value) = percent.iter().find(|value| !(0.0..=100.0).contains(*value)) {
+        fault("crack.front_percent", format!("must be 0 to 100 percent of the crack's length; {value} is not"));
+        return None;
+    }
+    if let Some(place) = face.iter().find(|place| place.abs() > half * (1.0 + 1e-9)) {
+        fault("crack.front_face_mm", format!("must be on the face, -{half} to {half} mm; {place} is not"));
+        return None;
+    }
+    let places: Vec<(f64, f64)> = face.iter().zip(percent).map(|(z, percent)| (z * MM, percent / 100.0)).collect();
+    CrackFront::from_lengths(&places).map_err(|error| fault("crack.front_face_mm", error.to_string())).ok()
+}
+
+fn root_crack(
+    keys: &Crack,
+    gear: &Gear,
+    side: FlankSide,
+    index: usize,
+    fault: &mut impl FnMut(&str, String),
+) -> Option<RootCrack> {
+    let (front, longest) = crack_front(keys, gear, fault)?;
     let length = match (&keys.length_percent, &keys.length_mm) {
         (Some(percent), None) => {
             let percent = at(percent, index);
@@ -195,7 +240,7 @@ fn root_crack(keys: &Crack, side: FlankSide, index: usize, fault: &mut impl FnMu
                 fault("crack.length_percent", format!("must be 0 to 97; {percent} is not"));
                 return None;
             }
-            CrackLength::Chord(percent / 100.0)
+            CrackLength::Chord(longest * percent / 100.0)
         }
         (None, Some(length)) => {
             let length = at(length, index);
@@ -203,7 +248,7 @@ fn root_crack(keys: &Crack, side: FlankSide, index: usize, fault: &mut impl FnMu
                 fault("crack.length_mm", format!("must be 0 or more; {length} is not"));
                 return None;
             }
-            CrackLength::Length(length * MM)
+            CrackLength::Length(longest * length * MM)
         }
         _ => {
             fault("crack", "give either length_percent or length_mm".into());
@@ -216,6 +261,7 @@ fn root_crack(keys: &Crack, side: FlankSide, index: usize, fault: &mut impl FnMu
         start_tangent: radians(keys.start_tangent_deg),
         direction: radians(keys.direction_deg),
         length,
+        front,
     })
 }
 

@@ -321,7 +321,7 @@ pub struct Damage {
     #[serde(default)]
     #[schemars(range(min = 0, max = 1999))]
     pub tooth: u32,
-    /// A root crack through the whole face.
+    /// A root crack, through the whole face or of a length that varies along it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crack: Option<Crack>,
     /// A pit on the working flank (3d only).
@@ -409,6 +409,14 @@ pub struct Crack {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 120.0))]
     pub direction_deg: Option<f64>,
+    /// How the length varies along the face: percent of the length above at the places of `front_face_mm`, straight lines between them; two values
+    /// without places are those at the negative and at the positive end of the face. `[0.0, 100.0]` is a crack from the positive end to nothing at the other.
+    /// Needs `analysis.model = "3d"`; default: the same all along.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub front_percent: Vec<f64>,
+    /// Face positions of `front_percent` (mm, 0 at mid-face), ascending; level beyond the first and the last.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub front_face_mm: Vec<f64>,
 }
 
 /// Side of a tooth at which a crack starts.
