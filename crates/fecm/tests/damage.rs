@@ -14,8 +14,8 @@ use fecm::ring::{Arc, ring_compliance};
 use fecm::statics::{PairModel, PairModelOptions, PositionResult, PositionStatus, StaticsRequest};
 use fecm::{FaceModel, FecmError, Material};
 use gear_geom::{
-    BrokenCorner, CrackLength, Damage, FlankSide, Gear, GearPair, GearSpec, MeasuredDeviation, Member, Pit,
-    ProfileMeasure, RootCrack, ToothDamage,
+    BrokenCorner, CrackLength, CrackPath, CrackStart, Damage, FlankSide, Gear, GearPair, GearSpec, MeasuredDeviation,
+    Member, Pit, ProfileMeasure, RootCrack, ToothDamage,
 };
 use nalgebra::Point2;
 
@@ -345,6 +345,36 @@ fn extreme_several_damages() {
     }
 }
 
+/// A path through points (mm).
+fn through(points: &[[f64; 2]]) -> CrackPath {
+    CrackPath::Through(points.iter().map(|point| point.map(|value| value * 1e-3)).collect())
+}
+
+/// A path through points of a line is that line; through points of an arc, of a length between those of the chords and of the tangents, it gives the same
+/// transmission error whether it is told by few points or by many.
+#[test]
+fn invariant_crack_paths() {
+    let model = PairModel::new(&pair(), &options(FaceModel::PlaneStrain)).unwrap();
+    let error = |path: CrackPath, length: f64| {
+        let length = CrackLength::Length(length);
+        let crack = RootCrack { path, length, ..RootCrack::along_chord(FlankSide::Upper, 0.3) };
+        let damage = ToothDamage { tooth: 0, damage: Damage::Crack(crack) };
+        let damaged = model.with_damage(&[vec![damage], vec![]]).unwrap();
+        solve(&damaged, &[0.2])[0].static_transmission_error
+    };
+    let angle = 70_f64.to_radians();
+    let at = |along: f64| [along * angle.sin(), along * angle.cos()];
+    let straight = error(CrackPath::Straight(angle), 3e-3);
+    let told = error(through(&[at(0.7), at(1.6), at(4.0)]), 3e-3);
+    assert!((told / straight - 1.0).abs() < 1e-6, "{told} {straight}");
+    let arc = |angle: f64| [4.0 * angle.sin(), 4.0 * (1.0 - angle.cos())];
+    let points =
+        |count: i32| -> Vec<[f64; 2]> { (1..=count).map(|k| arc(0.8 * f64::from(k) / f64::from(count))).collect() };
+    let [few, many] = [4, 16].map(|count| error(through(&points(count)), 3e-3));
+    assert!((few / many - 1.0).abs() < 1e-4, "{few} {many}");
+    assert!((few / straight - 1.0).abs() > 1e-3, "paths matter: {few} {straight}");
+}
+
 #[test]
 fn impossible_cracks_are_explained() {
     let model = PairModel::new(&pair(), &options(FaceModel::PlaneStrain)).unwrap();
@@ -357,15 +387,29 @@ fn impossible_cracks_are_explained() {
         RootCrack { length: CrackLength::Chord(1.2), ..usual.clone() },
         RootCrack { length: CrackLength::Length(0.5), ..usual.clone() },
         RootCrack { length: CrackLength::Length(f64::NAN), ..usual.clone() },
-        RootCrack { start_tangent: Some(0.01), ..usual.clone() },
-        RootCrack { direction: Some(-0.5), ..usual.clone() },
+        RootCrack { start: CrackStart::Tangent(0.01), ..usual.clone() },
+        RootCrack { start: CrackStart::Radius(1.0), ..usual.clone() },
+        RootCrack { path: CrackPath::Straight(-0.5), ..usual.clone() },
+        RootCrack { path: through(&[[1.0, 0.2], [0.5, 0.4], [2.0, 0.6]]), ..usual.clone() },
+        RootCrack { path: through(&[[1.0, 0.2], [1.0, 0.2]]), ..usual.clone() },
+        RootCrack { path: through(&[[0.3, 0.1]]), length: CrackLength::Path(20.0), ..usual.clone() },
     ] {
         assert!(matches!(with(crack.clone()), Err(FecmError::Crack { .. })), "{crack:?}");
     }
     for crack in [
-        RootCrack { start_tangent: Some(30_f64.to_radians()), ..usual.clone() },
-        RootCrack { direction: Some(60_f64.to_radians()), length: CrackLength::Length(2e-3), ..usual.clone() },
+        RootCrack { start: CrackStart::Tangent(30_f64.to_radians()), ..usual.clone() },
+        RootCrack {
+            path: CrackPath::Straight(60_f64.to_radians()),
+            length: CrackLength::Length(2e-3),
+            ..usual.clone()
+        },
         RootCrack { side: FlankSide::Lower, ..usual.clone() },
+        RootCrack {
+            path: through(&[[1.0, 0.2], [2.0, 0.6], [3.0, 1.4]]),
+            length: CrackLength::Length(2.5e-3),
+            ..usual.clone()
+        },
+        RootCrack { path: through(&[[1.0, 0.2], [2.0, 0.6]]), length: CrackLength::Path(0.7), ..usual.clone() },
     ] {
         with(crack).unwrap();
     }

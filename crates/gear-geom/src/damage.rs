@@ -15,8 +15,34 @@ use crate::modification::MeasuredDeviation;
 pub enum CrackLength {
     /// Fraction of the way from fillet to fillet along the chord below the tooth, 0 to 0.97.
     Chord(f64),
+    /// Fraction of the crack's own path, 0 to 1; for a crack along the chord the same as [`Self::Chord`].
+    Path(f64),
     /// Length (m).
     Length(f64),
+}
+
+/// Where on the fillet a crack starts.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum CrackStart {
+    /// In the middle of the fillet's turn.
+    #[default]
+    MiddleOfFillet,
+    /// Where the fillet's tangent makes this angle with the tooth's centre line (rad).
+    Tangent(f64),
+    /// At this radius (m); one at roll distance `s` is `sqrt(r_b^2 + s^2)`.
+    Radius(f64),
+}
+
+/// How a crack runs into the tooth.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum CrackPath {
+    /// Along the chord to the other fillet.
+    #[default]
+    Chord,
+    /// Straight, at this angle to the tooth's centre line, toward the axis (rad, a quarter turn is straight across).
+    Straight(f64),
+    /// A smooth curve through points: from the start across the tooth, and toward the axis (m).
+    Through(Vec<[f64; 2]>),
 }
 
 /// How the length of a crack varies along the face: straight lines between given places, level beyond the first and the last.
@@ -112,11 +138,10 @@ impl CrackFront {
 pub struct RootCrack {
     /// Flank at whose fillet it starts.
     pub side: FlankSide,
-    /// Angle between the fillet's tangent at the start and the tooth's centre line (rad); `None`: the middle of the fillet's turn.
-    pub start_tangent: Option<f64>,
-    /// Angle between the crack and the tooth's centre line, toward the axis (rad, a quarter turn is straight across); `None`: along the
-    /// chord to the other fillet.
-    pub direction: Option<f64>,
+    /// Where it starts.
+    pub start: CrackStart,
+    /// How it runs.
+    pub path: CrackPath,
     /// Its length, where it is longest; 0 is no crack.
     pub length: CrackLength,
     /// How its length varies along the face.
@@ -128,7 +153,7 @@ impl RootCrack {
     #[must_use]
     pub fn along_chord(side: FlankSide, fraction: f64) -> Self {
         let length = CrackLength::Chord(fraction);
-        Self { side, start_tangent: None, direction: None, length, front: CrackFront::default() }
+        Self { side, start: CrackStart::default(), path: CrackPath::default(), length, front: CrackFront::default() }
     }
 
     /// Whether there is a crack, and its length varies along the face.
@@ -141,7 +166,7 @@ impl RootCrack {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         match self.length {
-            CrackLength::Chord(length) | CrackLength::Length(length) => length == 0.0,
+            CrackLength::Chord(length) | CrackLength::Path(length) | CrackLength::Length(length) => length == 0.0,
         }
     }
 }

@@ -49,7 +49,8 @@ pub mod outline;
 pub mod pair;
 
 pub use damage::{
-    BrokenCorner, CrackFront, CrackLength, Damage, Pit, PitShape, ProfileMeasure, RootCrack, ToothDamage,
+    BrokenCorner, CrackFront, CrackLength, CrackPath, CrackStart, Damage, Pit, PitShape, ProfileMeasure, RootCrack,
+    ToothDamage,
 };
 pub use error::{GeometryError, GeometryErrors};
 pub use fillet::{Fillet, FilletSpec};

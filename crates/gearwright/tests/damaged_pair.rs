@@ -163,6 +163,17 @@ fn impossible_damage_is_explained_at_its_line() {
         ),
         ("3d", "[[damage]]\non = \"pinion\"\ncrack.length_mm = 50.0\n", &["case.toml:39", "crack", "chord"]),
         ("3d", "[[damage]]\non = \"pinion\"\ncrack.length_mm = 2.0\ncrack.start_tangent_deg = 1.0\n", &["tangent"]),
+        ("3d", "[[damage]]\non = \"pinion\"\ncrack.length_mm = 2.0\ncrack.start_radius_mm = 1.0\n", &["radius"]),
+        (
+            "3d",
+            "[[damage]]\non = \"pinion\"\ncrack.length_mm = 2.0\ncrack.path_across_mm = [1.0, 2.0]\n",
+            &["path_across_mm", "2 and 0 values"],
+        ),
+        (
+            "3d",
+            "[[damage]]\non = \"pinion\"\ncrack.length_mm = 2.0\ncrack.path_across_mm = [1.0, 2.0]\ncrack.path_inward_mm = [0.2, 0.6]\ncrack.direction_deg = 60.0\n",
+            &["direction_deg", "path_across_mm"],
+        ),
         (
             "3d",
             "[[damage]]\non = \"pinion\"\npit.roll_distance_mm = 99.0\npit.width_mm = 1.0\npit.height_mm = 1.0\n",

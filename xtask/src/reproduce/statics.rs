@@ -92,7 +92,9 @@ pub fn percent(case: &SpurPairCase, damage: &[Vec<gear_geom::ToothDamage>; 2]) -
             sum += match &one.damage {
                 Damage::Pit(pit) => 100.0 * area_fraction(case, member, pit),
                 Damage::Crack(crack) => match crack.length {
-                    gear_geom::CrackLength::Chord(fraction) => 100.0 * fraction,
+                    gear_geom::CrackLength::Chord(fraction) | gear_geom::CrackLength::Path(fraction) => {
+                        100.0 * fraction
+                    }
                     gear_geom::CrackLength::Length(_) => 0.0,
                 },
                 // neither has a size in percent

@@ -3,7 +3,8 @@
 use fecm::FaceModel;
 use fecm::statics::PairModel;
 use gear_geom::{
-    BrokenCorner, CrackLength, Damage, FlankSide, GearPair, Member, Pit, ProfileMeasure, RootCrack, ToothDamage,
+    BrokenCorner, CrackLength, CrackPath, Damage, FlankSide, GearPair, Member, Pit, ProfileMeasure, RootCrack,
+    ToothDamage,
 };
 
 use super::pairs::USUAL;
@@ -95,7 +96,7 @@ pub fn cases() -> Table {
         ("crack of 120 %", RootCrack { length: CrackLength::Chord(1.2), ..usual() }),
         ("crack of half a metre", RootCrack { length: CrackLength::Length(0.5), ..usual() }),
         ("crack of length NaN", RootCrack { length: CrackLength::Length(f64::NAN), ..usual() }),
-        ("crack that leaves the tooth", RootCrack { direction: Some(-0.5), ..usual() }),
+        ("crack that leaves the tooth", RootCrack { path: CrackPath::Straight(-0.5), ..usual() }),
     ];
     for (name, crack) in impossible {
         table.refused(name, || {

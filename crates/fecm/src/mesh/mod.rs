@@ -1,6 +1,7 @@
 //! Plane meshes: blocks ([`blocks`]), and the tooth sector made of them ([`sector`]).
 
 pub mod blocks;
+mod crack_path;
 pub mod plane;
 pub mod sector;
 

@@ -15,10 +15,11 @@
 use std::collections::HashSet;
 use std::f64::consts::FRAC_PI_3;
 
-use gear_geom::{CrackFront, CrackLength, FlankSide, Gear, GearKind, HalfToothOutline, OutlineSegment, RootCrack};
+use gear_geom::{CrackFront, CrackStart, FlankSide, Gear, GearKind, HalfToothOutline, OutlineSegment, RootCrack};
 use nalgebra::{Point2, Rotation2, Vector2};
 
 use super::blocks::{BlockElements, BlockMesher, Edge, Vertex, geometric_breaks};
+use super::crack_path::{ChordPath, Junction, mouth_on_fillet, polyline_length};
 use super::plane::PlaneMesh;
 use crate::condense::{RichNode, Substructure};
 use crate::element::ReferenceQuad;
@@ -218,12 +219,8 @@ struct Half {
     mouth: Vertex,
     tip: Vertex,
     rim_vertex: Vertex,
-    junction_point: Point2<f64>,
+    at: Junction,
     rim_angle: f64,
-    /// Tangent of the outline at the junction, toward the tip.
-    up: Vector2<f64>,
-    /// +1 for the half at `theta > 0`.
-    sign: f64,
 }
 
 struct SectorBuilder<'a> {
@@ -259,7 +256,7 @@ impl<'a> SectorBuilder<'a> {
         // counter-clockwise: the lower half first when teeth point outward, the upper half first otherwise
         let first = self.half(-self.outward)?;
         let second = self.half(self.outward)?;
-        let path = ChordPath::new(self.crack, &first, &second, self.outward)?;
+        let path = ChordPath::new(self.crack, &first.at, &second.at, self.outward)?;
         let across = self.across_breaks(&path);
         let (above, below, faces) = self.chord(&path, &first, &second, &across);
         let tip = self.tip_edge(&first, &second, &across);
@@ -350,10 +347,8 @@ impl<'a> SectorBuilder<'a> {
         let on_rim = move |angle: f64| Point2::new(rim_radius * angle.cos(), rim_radius * angle.sin());
         let crack = self.crack.filter(|crack| crack.side.sign() == sign);
         let middle_u = OutlinePath::new(&outline, &[(OutlineSegment::Fillet, 0.0, 1.0)]).locate(0.5).1;
-        let junction_u = match crack.and_then(|crack| crack.start_tangent) {
-            Some(angle) => fillet_at_tangent(&outline, angle)?,
-            None => middle_u,
-        };
+        let start = crack.map_or(CrackStart::MiddleOfFillet, |crack| crack.start);
+        let junction_u = mouth_on_fillet(&outline, start)?.unwrap_or(middle_u);
         let at_junction = outline.point(OutlineSegment::Fillet, junction_u);
         let up = outline.tangent(OutlineSegment::Fillet, junction_u);
         // the cut and the rim are those of every sector of the gear, wherever a crack starts
@@ -409,10 +404,8 @@ impl<'a> SectorBuilder<'a> {
             junction,
             tip,
             rim_vertex,
-            junction_point: mirror(at_junction),
+            at: Junction { point: mirror(at_junction), up: Vector2::new(up.x, sign * up.y), sign },
             rim_angle: sign * rim_angle,
-            up: Vector2::new(up.x, sign * up.y),
-            sign,
         })
     }
 
@@ -464,7 +457,7 @@ impl<'a> SectorBuilder<'a> {
         let corner = self.outline.point(OutlineSegment::Flank, 1.0);
         let crest = self.outline.point(OutlineSegment::TipLand, 1.0).coords.norm();
         let (radius, angle) = (corner.coords.norm(), corner.y.atan2(corner.x));
-        let (from, to) = (first.sign * angle, second.sign * angle);
+        let (from, to) = (first.at.sign * angle, second.at.sign * angle);
         self.mesher.edge(first.tip, second.tip, across, |t| {
             let (sine, cosine) = (from + t * (to - from)).sin_cos();
             let radius = radius + (crest - radius) * 4.0 * t * (1.0 - t);
@@ -487,131 +480,6 @@ impl<'a> SectorBuilder<'a> {
         let p = self.density.order;
         (0..(edge.nodes().len() - 1) / p).map(|k| edge.nodes()[k * p..=(k + 1) * p].to_vec()).collect()
     }
-}
-
-/// Curve from the first junction to the second: a cubic that leaves and reaches the fillets in thirds of their half turn, or the line of
-/// a crack continued by such a cubic. Parameters are fractions of its length.
-struct ChordPath {
-    /// Length fraction and point, ascending.
-    table: Vec<(f64, Point2<f64>)>,
-    /// Length fraction of the crack's tip from the first junction.
-    crack_tip: Option<f64>,
-    crack_length: f64,
-    chord_length: f64,
-    /// Whether the crack starts at the first junction.
-    from_first: bool,
-}
-
-/// Largest part of the chord that a crack may take: what is left must carry the tooth.
-const LONGEST_CRACK: f64 = 0.97;
-
-impl ChordPath {
-    fn new(crack: Option<&RootCrack>, first: &Half, second: &Half, outward: f64) -> Result<Self, FecmError> {
-        let bend_direction = |half: &Half| Rotation2::new(-outward * half.sign * FRAC_PI_3) * half.up;
-        let (a, b) = (first.junction_point, second.junction_point);
-        let (from_a, from_b) = (bend_direction(first), bend_direction(second));
-        let chord = cubic(a, from_a, from_b, b);
-        let chord_length = polyline_length(&chord);
-        let Some(crack) = crack else {
-            let table = by_length(&chord);
-            return Ok(Self { table, crack_tip: None, crack_length: 0.0, chord_length, from_first: true });
-        };
-        let from_first = crack.side.sign() == first.sign;
-        let (start, end, end_direction) = if from_first { (a, b, from_b) } else { (b, a, from_a) };
-        let length = match crack.length {
-            CrackLength::Chord(fraction) => fraction * chord_length,
-            CrackLength::Length(length) => length,
-        };
-        if !(length > 0.0 && length <= LONGEST_CRACK * chord_length) {
-            let (value, most) = (length, LONGEST_CRACK * chord_length);
-            return Err(FecmError::Crack {
-                what: "length (m)",
-                value,
-                allowed: format!("0 to {most:.4e} m: 97 % of the chord below the tooth"),
-            });
-        }
-        let mut points = match crack.direction {
-            None if from_first => chord,
-            None => chord.into_iter().rev().collect(),
-            Some(angle) => {
-                let side = crack.side.sign();
-                let direction = Vector2::new(-outward * angle.cos(), -side * angle.sin());
-                let tip = start + direction * length;
-                // the tip must keep away from the other fillet and from the mouth's own flank
-                let inside = side * (tip.y - end.y) > 0.02 * chord_length && side * tip.y < side * start.y;
-                if !inside {
-                    let allowed = "a direction and length that stay inside the tooth".to_owned();
-                    return Err(FecmError::Crack { what: "direction (rad)", value: angle, allowed });
-                }
-                let mut line: Vec<Point2<f64>> =
-                    (0..64).map(|k| start + direction * (length * f64::from(k) / 64.0)).collect();
-                line.extend(cubic(tip, direction, end_direction, end));
-                line
-            }
-        };
-        let tip = length / polyline_length(&points);
-        if !from_first {
-            points.reverse();
-        }
-        let crack_tip = Some(if from_first { tip } else { 1.0 - tip });
-        Ok(Self { table: by_length(&points), crack_tip, crack_length: length, chord_length, from_first })
-    }
-
-    fn point(&self, t: f64) -> Point2<f64> {
-        let next = self.table.partition_point(|entry| entry.0 < t).clamp(1, self.table.len() - 1);
-        let ((s0, p0), (s1, p1)) = (self.table[next - 1], self.table[next]);
-        p0 + (p1 - p0) * ((t - s0) / (s1 - s0)).clamp(0.0, 1.0)
-    }
-}
-
-/// Finely sampled cubic from `a` along `from_a` to `b`, where `from_b` points back into the curve.
-fn cubic(a: Point2<f64>, from_a: Vector2<f64>, from_b: Vector2<f64>, b: Point2<f64>) -> Vec<Point2<f64>> {
-    const SAMPLES: u32 = 2000;
-    let reach = (b - a).norm() / 3.0;
-    let (a_bend, b_bend) = (a + from_a.normalize() * reach, b + from_b.normalize() * reach);
-    let at = |t: f64| {
-        let s = 1.0 - t;
-        Point2::from(
-            a.coords * (s * s * s)
-                + a_bend.coords * (3.0 * s * s * t)
-                + b_bend.coords * (3.0 * s * t * t)
-                + b.coords * (t * t * t),
-        )
-    };
-    (0..=SAMPLES).map(|k| at(f64::from(k) / f64::from(SAMPLES))).collect()
-}
-
-fn polyline_length(points: &[Point2<f64>]) -> f64 {
-    points.windows(2).map(|p| (p[1] - p[0]).norm()).sum()
-}
-
-/// Points with their fraction of the length.
-fn by_length(points: &[Point2<f64>]) -> Vec<(f64, Point2<f64>)> {
-    let total = polyline_length(points);
-    let mut sum = 0.0;
-    let mut table = vec![(0.0, points[0])];
-    for pair in points.windows(2) {
-        sum += (pair[1] - pair[0]).norm();
-        table.push((sum / total, pair[1]));
-    }
-    table
-}
-
-/// Parameter of the fillet where its tangent makes an angle with the centre line.
-fn fillet_at_tangent(outline: &HalfToothOutline, angle: f64) -> Result<f64, FecmError> {
-    let at = |u: f64| outline.tangent(OutlineSegment::Fillet, u).x.abs().min(1.0).acos();
-    // from the root land (a right angle) to the flank the tangent turns toward the centre line
-    let (steepest, flattest) = (at(0.98), at(0.02));
-    if !(angle > steepest && angle < flattest) {
-        let allowed = format!("{steepest:.3} to {flattest:.3} rad: the range of this fillet");
-        return Err(FecmError::Crack { what: "tangent angle at the start (rad)", value: angle, allowed });
-    }
-    let (mut low, mut high) = (0.02, 0.98);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if at(middle) > angle { low = middle } else { high = middle }
-    }
-    Ok(0.5 * (low + high))
 }
 
 fn reverse<T>([a, b]: [T; 2]) -> [T; 2] {

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use fecm::mesh::SectorMesh;
 use gear_geom::{
-    CrackFront, CrackLength, FlankSide, Gear, GearPair, MeasuredDeviation, Pit, PitShape, ProfileMeasure, RootCrack,
-    ToothDamage,
+    CrackFront, CrackLength, CrackPath, CrackStart, FlankSide, Gear, GearPair, MeasuredDeviation, Pit, PitShape,
+    ProfileMeasure, RootCrack, ToothDamage,
 };
 use nalgebra::Vector2;
 
@@ -225,6 +225,36 @@ fn crack_front(keys: &Crack, gear: &Gear, fault: &mut impl FnMut(&str, String)) 
     CrackFront::from_lengths(&places).map_err(|error| fault("crack.front_face_mm", error.to_string())).ok()
 }
 
+fn crack_start(keys: &Crack, fault: &mut impl FnMut(&str, String)) -> Option<CrackStart> {
+    match (keys.start_tangent_deg, keys.start_radius_mm) {
+        (None, None) => Some(CrackStart::MiddleOfFillet),
+        (Some(angle), None) => Some(CrackStart::Tangent(angle.to_radians())),
+        (None, Some(radius)) => Some(CrackStart::Radius(radius * MM)),
+        (Some(_), Some(_)) => {
+            fault("crack", "give either start_tangent_deg or start_radius_mm".into());
+            None
+        }
+    }
+}
+
+fn crack_path(keys: &Crack, fault: &mut impl FnMut(&str, String)) -> Option<CrackPath> {
+    let (across, inward) = (&keys.path_across_mm, &keys.path_inward_mm);
+    if across.len() != inward.len() {
+        let counts = format!("{} and {} values", across.len(), inward.len());
+        fault("crack.path_across_mm", format!("and path_inward_mm have {counts}: give one of each for every point"));
+        return None;
+    }
+    match (keys.direction_deg, across.is_empty()) {
+        (None, true) => Some(CrackPath::Chord),
+        (Some(angle), true) => Some(CrackPath::Straight(angle.to_radians())),
+        (None, false) => Some(CrackPath::Through(across.iter().zip(inward).map(|(a, b)| [a * MM, b * MM]).collect())),
+        (Some(_), false) => {
+            fault("crack", "give either direction_deg or path_across_mm and path_inward_mm".into());
+            None
+        }
+    }
+}
+
 fn root_crack(
     keys: &Crack,
     gear: &Gear,
@@ -236,11 +266,14 @@ fn root_crack(
     let length = match (&keys.length_percent, &keys.length_mm) {
         (Some(percent), None) => {
             let percent = at(percent, index);
-            if !(0.0..=97.0).contains(&percent) {
-                fault("crack.length_percent", format!("must be 0 to 97; {percent} is not"));
+            let has_path = !keys.path_across_mm.is_empty();
+            let most = if has_path { 100.0 } else { 97.0 };
+            if !(0.0..=most).contains(&percent) {
+                fault("crack.length_percent", format!("must be 0 to {most}; {percent} is not"));
                 return None;
             }
-            CrackLength::Chord(longest * percent / 100.0)
+            let fraction = longest * percent / 100.0;
+            if has_path { CrackLength::Path(fraction) } else { CrackLength::Chord(fraction) }
         }
         (None, Some(length)) => {
             let length = at(length, index);
@@ -255,14 +288,7 @@ fn root_crack(
             return None;
         }
     };
-    let radians = |degrees: Option<f64>| degrees.map(f64::to_radians);
-    Some(RootCrack {
-        side,
-        start_tangent: radians(keys.start_tangent_deg),
-        direction: radians(keys.direction_deg),
-        length,
-        front,
-    })
+    Some(RootCrack { side, start: crack_start(keys, fault)?, path: crack_path(keys, fault)?, length, front })
 }
 
 fn pit(

@@ -390,7 +390,8 @@ pub enum Member {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Crack {
-    /// Length in percent of the chord from fillet to fillet below the tooth, 0 to 97; a number, or a list for a sweep. Give this or `length_mm`.
+    /// Length in percent of the chord from fillet to fillet below the tooth, 0 to 97, or of the path, if points give one; a number, or a list for a
+    /// sweep. Give this or `length_mm`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length_percent: Option<Values>,
     /// Length (mm); a number, or a list for a sweep.
@@ -405,10 +406,22 @@ pub struct Crack {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 90.0))]
     pub start_tangent_deg: Option<f64>,
+    /// Radius at which it starts on the fillet, instead of a tangent (mm); a place at roll distance s lies at the root of s^2 and the base radius
+    /// squared.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0))]
+    pub start_radius_mm: Option<f64>,
     /// Angle between the crack and the tooth's centre line, toward the axis (degrees; 90 is straight across); default: along the chord.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 120.0))]
     pub direction_deg: Option<f64>,
+    /// A path of its own instead of a direction: points, from the start across the tooth (mm), joined by a smooth curve together with
+    /// `path_inward_mm`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub path_across_mm: Vec<f64>,
+    /// The same points, from the start toward the gear's axis (mm; for internal teeth away from it).
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub path_inward_mm: Vec<f64>,
     /// How the length varies along the face: percent of the length above at the places of `front_face_mm`, straight lines between them; two values
     /// without places are those at the negative and at the positive end of the face. `[0.0, 100.0]` is a crack from the positive end to nothing at the other.
     /// Needs `analysis.model = "3d"`; default: the same all along.
