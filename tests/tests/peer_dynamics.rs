@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use fecm::dynamics::{
-    Damping, DynamicsOptions, DynamicsRequest, ImpulseSpec, InitialState, Integrator, Motion, PairDynamics,
-    RotorInertia, RotorOptions, SteadySpec, StepSolver, Support,
+    Damping, DynamicsOptions, DynamicsRequest, ImpulseSpec, PairDynamics, RotorInertia, RotorOptions, SteadySpec,
+    Support,
 };
 use fecm::statics::{PairModel, StaticsRequest};
 use gearwright::case;
@@ -30,13 +30,10 @@ fn options() -> DynamicsOptions {
     let rotor = |mass, polar, rotation| {
         RotorOptions::on_ideal_bearings(RotorInertia { mass, polar, transverse: 0.5 * polar }, rotation)
     };
-    DynamicsOptions {
-        rotors: [rotor(0.7294, 0.0008, Support::Fixed), rotor(0.8537, 0.0050, Support::Free)],
-        damping: Damping { mass_proportional: ALPHA, stiffness_proportional: 0.0, modal_ratio: 0.0 },
-        integrator: Integrator::AverageAcceleration,
-        solver: StepSolver::Newton,
-        operator_memory: 1 << 30,
-    }
+    DynamicsOptions::new(
+        [rotor(0.7294, 0.0008, Support::Fixed), rotor(0.8537, 0.0050, Support::Free)],
+        Damping { mass_proportional: ALPHA, stiffness_proportional: 0.0, modal_ratio: 0.0 },
+    )
 }
 
 #[test]
@@ -63,14 +60,7 @@ fn peer_lumped_model_fed_with_the_same_stiffness() {
         Model::new(&pair, &Excitation::new(&curve(&stiffness), &curve(&error)).unwrap(), Supports::Rigid).unwrap();
     let dynamics = PairDynamics::new(&model, &options()).unwrap();
     for (mesh_frequency, allowed) in [(300.0, 0.02), (900.0, 0.03), (3500.0, 0.03)] {
-        let request = DynamicsRequest {
-            mesh_cycle: 0.0,
-            motion: Motion::Running { speed: TAU * mesh_frequency / 27.0, steps_per_cycle: STEPS },
-            torque: TORQUE,
-            pulse: None,
-            initial: InitialState::Equilibrium,
-            snapshots: Vec::new(),
-        };
+        let request = DynamicsRequest::running(TAU * mesh_frequency / 27.0, STEPS, TORQUE);
         let spec = SteadySpec { period: STEPS, tolerance: 1e-8, most_periods: 200 };
         let (run, change) = dynamics.start(&request).unwrap().settle(&spec, &()).unwrap();
         assert!(change < spec.tolerance, "{mesh_frequency} Hz: {change:.1e}");

@@ -8,10 +8,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use fecm::body::{BodyOptions, GearBody};
-use fecm::dynamics::{
-    Damping, DynamicsOptions, DynamicsRequest, InitialState, Integrator, Motion, PairDynamics, RotorInertia,
-    RotorOptions, StepSolver, Support,
-};
+use fecm::dynamics::{Damping, DynamicsOptions, DynamicsRequest, PairDynamics, RotorInertia, RotorOptions, Support};
 use fecm::{FaceModel, PairModel, PairModelOptions, StaticsRequest};
 use gear_geom::{Damage, FlankSide, Gear, GearPair, RootCrack, ToothDamage};
 use gearwright::case::{self, SpurPairCase};
@@ -168,20 +165,13 @@ fn motion(case: &SpurPairCase, model: &PairModel, (modes, memory): (usize, usize
         ..RotorOptions::on_ideal_bearings(RotorInertia { mass, polar, transverse: 0.5 * polar }, rotation)
     };
     let options = DynamicsOptions {
-        rotors: [rotor(0.7294, 8e-4, Support::Fixed), rotor(0.8537, 0.005, Support::Free)],
-        damping: Damping { mass_proportional: 1430.0, stiffness_proportional: 0.0, modal_ratio: 0.01 },
-        integrator: Integrator::AverageAcceleration,
-        solver: StepSolver::Newton,
         operator_memory: memory,
+        ..DynamicsOptions::new(
+            [rotor(0.7294, 8e-4, Support::Fixed), rotor(0.8537, 0.005, Support::Free)],
+            Damping { mass_proportional: 1430.0, stiffness_proportional: 0.0, modal_ratio: 0.01 },
+        )
     };
-    let request = DynamicsRequest {
-        mesh_cycle: 0.0,
-        motion: Motion::Running { speed: 4000.0 * std::f64::consts::PI / 30.0, steps_per_cycle: 50 },
-        torque: case.inputs.load.torque_n_m,
-        pulse: None,
-        initial: InitialState::Equilibrium,
-        snapshots: Vec::new(),
-    };
+    let request = DynamicsRequest::running(4000.0 * std::f64::consts::PI / 30.0, 50, case.inputs.load.torque_n_m);
     measured(|| {
         let run = PairDynamics::new(model, &options)?.run(&request, 50 * CYCLES, &())?;
         let last = &run.records[run.records.len() - 50..];

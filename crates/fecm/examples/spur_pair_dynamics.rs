@@ -2,10 +2,7 @@
 //!
 //! `cargo run --release -p fecm --example spur_pair_dynamics [plane-stress|3d] [rpm] [cells per half width] [face cells] [mesh cycles]`
 
-use fecm::dynamics::{
-    Damping, DynamicsOptions, DynamicsRequest, InitialState, Integrator, Motion, PairDynamics, RotorInertia,
-    RotorOptions, StepSolver, Support,
-};
+use fecm::dynamics::{Damping, DynamicsOptions, DynamicsRequest, PairDynamics, RotorInertia, RotorOptions, Support};
 use fecm::{ContactOptions, FaceModel, PairModel, PairModelOptions};
 use gear_geom::{FilletSpec, Gear, GearPair, GearSpec, ToothThickness};
 
@@ -46,25 +43,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         RotorOptions::on_ideal_bearings(RotorInertia { mass, polar, transverse: 0.5 * polar }, rotation)
     };
     let options = DynamicsOptions {
-        rotors: [rotor(0.9, 8e-4, Support::Fixed), rotor(1.5, 0.005, Support::Free)],
-        damping: Damping {
-            mass_proportional: 2.0 * 0.048 * 2.0 * std::f64::consts::PI * 2370.73,
-            stiffness_proportional: 0.0,
-            modal_ratio: 0.0,
-        },
-        integrator: Integrator::AverageAcceleration,
-        solver: StepSolver::Newton,
         operator_memory: 1 << 31,
+        ..DynamicsOptions::new(
+            [rotor(0.9, 8e-4, Support::Fixed), rotor(1.5, 0.005, Support::Free)],
+            Damping {
+                mass_proportional: 2.0 * 0.048 * 2.0 * std::f64::consts::PI * 2370.73,
+                stiffness_proportional: 0.0,
+                modal_ratio: 0.0,
+            },
+        )
     };
     let cycles = argument(5, 40.0) as usize;
-    let request = DynamicsRequest {
-        mesh_cycle: 0.0,
-        motion: Motion::Running { speed: argument(2, 4000.0) * std::f64::consts::PI / 30.0, steps_per_cycle: 50 },
-        torque: 424.0,
-        pulse: None,
-        initial: InitialState::Equilibrium,
-        snapshots: Vec::new(),
-    };
+    let request = DynamicsRequest::running(argument(2, 4000.0) * std::f64::consts::PI / 30.0, 50, 424.0);
     let run = PairDynamics::new(&model, &options)?.run(&request, 50 * cycles, &())?;
     let last = &run.records[run.records.len() - 50..];
     for record in last.iter().step_by(5) {

@@ -30,24 +30,11 @@ fn rotor(rotation: Support) -> RotorOptions {
 }
 
 fn options(damping: Damping) -> DynamicsOptions {
-    DynamicsOptions {
-        rotors: [rotor(Support::Fixed), rotor(Support::Free)],
-        damping,
-        integrator: Integrator::AverageAcceleration,
-        solver: StepSolver::Newton,
-        operator_memory: 1 << 30,
-    }
+    DynamicsOptions::new([rotor(Support::Fixed), rotor(Support::Free)], damping)
 }
 
 fn running(rpm: f64, steps_per_cycle: usize) -> DynamicsRequest {
-    DynamicsRequest {
-        mesh_cycle: 0.0,
-        motion: Motion::Running { speed: rpm * RPM, steps_per_cycle },
-        torque: TORQUE,
-        pulse: None,
-        initial: InitialState::Equilibrium,
-        snapshots: Vec::new(),
-    }
+    DynamicsRequest::running(rpm * RPM, steps_per_cycle, TORQUE)
 }
 
 fn run(model: &PairModel, options: &DynamicsOptions, request: &DynamicsRequest, steps: usize) -> DynamicsRun {

@@ -4,8 +4,8 @@ mod common;
 
 use common::{TORQUE, pair};
 use fecm::dynamics::{
-    Damping, DynamicsOptions, DynamicsRequest, DynamicsRun, ImpulseSpec, InitialState, Integrator, Motion,
-    PairDynamics, RotorInertia, RotorOptions, SteadySpec, StepSolver, Support,
+    Damping, DynamicsOptions, DynamicsRequest, DynamicsRun, ImpulseSpec, PairDynamics, RotorInertia, RotorOptions,
+    SteadySpec, Support,
 };
 use fecm::statics::{PairModel, PairModelOptions};
 use fecm::{FaceModel, FecmError, MeshDensity};
@@ -32,24 +32,11 @@ fn options(model: &PairModel, modes: usize, damping: Damping, share: f64) -> Dyn
         let inertia = RotorInertia { mass, polar, transverse };
         RotorOptions { modes, ..RotorOptions::on_ideal_bearings(inertia, rotation) }
     };
-    DynamicsOptions {
-        rotors: [rotor(0, Support::Fixed), rotor(1, Support::Free)],
-        damping,
-        integrator: Integrator::AverageAcceleration,
-        solver: StepSolver::Newton,
-        operator_memory: 1 << 30,
-    }
+    DynamicsOptions::new([rotor(0, Support::Fixed), rotor(1, Support::Free)], damping)
 }
 
 fn running(rpm: f64, steps_per_cycle: usize) -> DynamicsRequest {
-    DynamicsRequest {
-        mesh_cycle: 0.0,
-        motion: Motion::Running { speed: rpm * RPM, steps_per_cycle },
-        torque: TORQUE,
-        pulse: None,
-        initial: InitialState::Equilibrium,
-        snapshots: Vec::new(),
-    }
+    DynamicsRequest::running(rpm * RPM, steps_per_cycle, TORQUE)
 }
 
 fn run(model: &PairModel, options: &DynamicsOptions, request: &DynamicsRequest, steps: usize) -> DynamicsRun {

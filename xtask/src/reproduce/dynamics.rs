@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 
 use anyhow::{Context as _, bail, ensure};
 use fecm::dynamics::{
-    Damping, DynamicsOptions, DynamicsRequest, InitialState, Integrator, Motion as Turning, PairDynamics, RotorInertia,
-    RotorOptions, SteadySpec, StepSolver, Support,
+    Damping, DynamicsOptions, DynamicsRequest, InitialState, PairDynamics, RotorInertia, RotorOptions, SteadySpec,
+    Support,
 };
 use fecm::statics::PairModel;
 use gearwright::case::SpurPairCase;
@@ -74,21 +74,14 @@ impl Dynamics {
         };
         let (ratio, frequency) = PRINTED_MODE;
         let mass_proportional = 2.0 * ratio * TAU * frequency;
-        let options = DynamicsOptions {
-            rotors: [rotor(table.pinion, Support::Fixed), rotor(table.gear, Support::Free)],
-            damping: Damping { mass_proportional, stiffness_proportional: 0.0, modal_ratio: 0.0 },
-            integrator: Integrator::AverageAcceleration,
-            solver: StepSolver::Newton,
-            operator_memory: 1 << 30,
-        };
+        let options = DynamicsOptions::new(
+            [rotor(table.pinion, Support::Fixed), rotor(table.gear, Support::Free)],
+            Damping { mass_proportional, stiffness_proportional: 0.0, modal_ratio: 0.0 },
+        );
         let teeth = case.pair.pinion().teeth() as usize;
         let mut request = DynamicsRequest {
             mesh_cycle: -PITCH,
-            motion: Turning::Running { speed: TAU * mesh_frequency / teeth as f64, steps_per_cycle: STEPS },
-            torque: case.inputs.load.torque_n_m,
-            pulse: None,
-            initial: InitialState::Equilibrium,
-            snapshots: Vec::new(),
+            ..DynamicsRequest::running(TAU * mesh_frequency / teeth as f64, STEPS, case.inputs.load.torque_n_m)
         };
         let mut model = PairModel::new(&case.pair, &case.options).context("the gears cannot be modelled")?;
         let settled = |model: &PairModel, request: &DynamicsRequest, spec: &SteadySpec, label: &str| {

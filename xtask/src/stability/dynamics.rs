@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use fecm::FaceModel;
 use fecm::dynamics::{
-    Damping, DynamicsOptions, DynamicsRequest, DynamicsRun, DynamicsState, InitialState, Integrator, Motion,
-    PairDynamics, RotorInertia, RotorOptions, StepSolver, Support,
+    Damping, DynamicsOptions, DynamicsRequest, DynamicsRun, DynamicsState, InitialState, Integrator, PairDynamics,
+    RotorInertia, RotorOptions, StepSolver, Support,
 };
 use fecm::statics::PairModel;
 
@@ -158,24 +158,11 @@ fn elastic(model: &PairModel, modes: usize) -> DynamicsOptions {
 
 fn options(damping: Damping, modes: usize) -> DynamicsOptions {
     let rotor = |rotation| RotorOptions { modes, ..RotorOptions::on_ideal_bearings(INERTIA, rotation) };
-    DynamicsOptions {
-        rotors: [rotor(Support::Fixed), rotor(Support::Free)],
-        damping,
-        integrator: Integrator::AverageAcceleration,
-        solver: StepSolver::Newton,
-        operator_memory: 1 << 30,
-    }
+    DynamicsOptions::new([rotor(Support::Fixed), rotor(Support::Free)], damping)
 }
 
 fn running(rpm: f64, steps_per_cycle: usize) -> DynamicsRequest {
-    DynamicsRequest {
-        mesh_cycle: 0.0,
-        motion: Motion::Running { speed: rpm * PI / 30.0, steps_per_cycle },
-        torque: TORQUE,
-        pulse: None,
-        initial: InitialState::Equilibrium,
-        snapshots: Vec::new(),
-    }
+    DynamicsRequest::running(rpm * PI / 30.0, steps_per_cycle, TORQUE)
 }
 
 fn run(

@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use anyhow::{bail, ensure};
 use fecm::dynamics::{
-    DynamicsOptions, DynamicsRequest, InitialState, Integrator, Motion, PairDynamics, SteadySpec, StepSolver,
+    DynamicsOptions, DynamicsRequest, InitialState, Integrator, PairDynamics, SteadySpec, StepSolver,
 };
 use fecm::statics::{PairModel, PairModelOptions};
 use gear_geom::{GearPair, ToothDamage};
@@ -212,14 +212,7 @@ fn solve(scene: &Scene, numerics: &Numerics) -> anyhow::Result<(Vec<Vec<f64>>, f
     let started = Instant::now();
     let healthy = PairModel::new(&scene.pair, &numerics.model)?;
     let dynamics = PairDynamics::new(&healthy, &numerics.options)?;
-    let request = DynamicsRequest {
-        mesh_cycle: 0.0,
-        motion: Motion::Running { speed: scene.speed, steps_per_cycle: numerics.steps },
-        torque: scene.torque,
-        pulse: None,
-        initial: InitialState::Equilibrium,
-        snapshots: Vec::new(),
-    };
+    let request = DynamicsRequest::running(scene.speed, numerics.steps, scene.torque);
     let spec = SteadySpec { period: numerics.steps, tolerance: STEADY, most_periods: MOST_CYCLES };
     let (run, change) = dynamics.start(&request)?.settle(&spec, &())?;
     ensure!(change < STEADY, "{}: not steady after {MOST_CYCLES} mesh cycles: {change:.1e}", scene.name);

@@ -314,21 +314,11 @@ fn reduced_run(model: &PairModel, modes: usize, steps: usize) -> Vec<f64> {
         modes,
         ..RotorOptions::on_ideal_bearings(inertia(model, body), rotation)
     };
-    let options = DynamicsOptions {
-        rotors: [rotor(0, Support::Fixed), rotor(1, Support::Free)],
-        damping: Damping { mass_proportional: ALPHA, stiffness_proportional: 0.0, modal_ratio: 0.0 },
-        integrator: Integrator::AverageAcceleration,
-        solver: StepSolver::Newton,
-        operator_memory: 1 << 30,
-    };
-    let request = DynamicsRequest {
-        mesh_cycle: 0.0,
-        motion: Motion::Running { speed: SPEED, steps_per_cycle: STEPS },
-        torque: TORQUE,
-        pulse: None,
-        initial: InitialState::Equilibrium,
-        snapshots: Vec::new(),
-    };
+    let options = DynamicsOptions::new(
+        [rotor(0, Support::Fixed), rotor(1, Support::Free)],
+        Damping { mass_proportional: ALPHA, stiffness_proportional: 0.0, modal_ratio: 0.0 },
+    );
+    let request = DynamicsRequest::running(SPEED, STEPS, TORQUE);
     let run = PairDynamics::new(model, &options).unwrap().run(&request, steps, &()).unwrap();
     assert!(run.records.iter().any(|r| r.mesh_force == 0.0), "teeth part");
     run.transmission_errors()

@@ -148,6 +148,18 @@ impl RotorOptions {
 }
 
 impl DynamicsOptions {
+    /// Average acceleration, semismooth Newton, 1 GiB of contact operators.
+    #[must_use]
+    pub fn new(rotors: [RotorOptions; 2], damping: Damping) -> Self {
+        Self {
+            rotors,
+            damping,
+            integrator: Integrator::AverageAcceleration,
+            solver: StepSolver::Newton,
+            operator_memory: 1 << 30,
+        }
+    }
+
     /// Checks the ranges.
     ///
     /// # Errors
@@ -179,6 +191,19 @@ impl DynamicsOptions {
 }
 
 impl DynamicsRequest {
+    /// Gears that turn, the pinion at `speed` (rad/s), under `torque` (N m) on the wheel, from equilibrium at mesh cycle 0.
+    #[must_use]
+    pub fn running(speed: f64, steps_per_cycle: usize, torque: f64) -> Self {
+        Self {
+            mesh_cycle: 0.0,
+            motion: Motion::Running { speed, steps_per_cycle },
+            torque,
+            pulse: None,
+            initial: InitialState::Equilibrium,
+            snapshots: Vec::new(),
+        }
+    }
+
     /// Length of a step (s) for gears with this angle from tooth to tooth of the pinion.
     #[must_use]
     pub fn time_step(&self, pinion_pitch: f64) -> f64 {
