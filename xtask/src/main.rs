@@ -47,9 +47,9 @@ enum Command {
     Stability,
     /// Error against run time; writes docs/reports/work-precision-STUDY.md and plots.
     WorkPrecision {
-        /// What to study.
+        /// What to study; default: everything.
         #[arg(value_enum)]
-        study: work_precision::Study,
+        study: Option<work_precision::Study>,
     },
 }
 

@@ -7,8 +7,10 @@ mod hums;
 mod report;
 mod statics;
 
+use clap::ValueEnum;
+
 /// What to study.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Study {
     /// Transmission error and mesh stiffness of the static contact.
     Statics,
@@ -22,8 +24,11 @@ pub enum Study {
     Hums,
 }
 
-/// Runs a study and writes its report.
-pub fn run(study: Study) -> anyhow::Result<()> {
+/// Runs a study, or all of them one after the other, and writes their reports.
+pub fn run(study: Option<Study>) -> anyhow::Result<()> {
+    let Some(study) = study else {
+        return Study::value_variants().iter().try_for_each(|&study| run(Some(study)));
+    };
     match study {
         Study::Statics => statics::run(),
         Study::Damage => damage::run(),
