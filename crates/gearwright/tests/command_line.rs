@@ -1,5 +1,6 @@
 //! The program as a user meets it: what it writes, what it says of bad input, what it leaves behind.
 
+#[macro_use]
 mod common;
 
 use std::path::Path;
@@ -7,37 +8,14 @@ use std::path::Path;
 use common::{Scratch, gearwright, text};
 
 /// A small case that runs in well under a second.
-const SMALL: &str = r#"kind = "spur-pair"
-title = "small"
-
-[mesh]
-module_mm = 6.0
-pressure_angle_deg = 20.0
-centre_distance_mm = 150.1
-
-[pinion]
-teeth = 25
-profile_shift = 0.0
-tip_diameter_mm = 162.0
-root_diameter_mm = 135.0
-bore_diameter_mm = 60.0
-facewidth_mm = 16.0
-
-[gear]
-teeth = 25
-profile_shift = 0.0
-tip_diameter_mm = 162.0
-root_diameter_mm = 135.0
-bore_diameter_mm = 60.0
-facewidth_mm = 16.0
-
-[load]
-torque_n_m = 200.0
-
+const SMALL: &str = spur_pair!(
+    "title = \"small\"\n",
+    r#"
 [analysis]
 positions_per_cycle = 10
 model = "plane-strain"
-"#;
+"#
+);
 
 #[test]
 fn run_writes_everything_it_promises() {

@@ -1,5 +1,6 @@
 //! Damage in case files: what a run leaves, and what is said of damage that cannot be.
 
+#[macro_use]
 mod common;
 
 use std::path::Path;
@@ -7,32 +8,9 @@ use std::process::Output;
 
 use common::{Scratch, gearwright};
 
-const PAIR: &str = r#"kind = "spur-pair"
-
-[mesh]
-module_mm = 6.0
-pressure_angle_deg = 20.0
-centre_distance_mm = 150.1
-
-[pinion]
-teeth = 25
-profile_shift = 0.0
-tip_diameter_mm = 162.0
-root_diameter_mm = 135.0
-bore_diameter_mm = 60.0
-facewidth_mm = 16.0
-
-[gear]
-teeth = 25
-profile_shift = 0.0
-tip_diameter_mm = 162.0
-root_diameter_mm = 135.0
-bore_diameter_mm = 60.0
-facewidth_mm = 16.0
-
-[load]
-torque_n_m = 200.0
-
+const PAIR: &str = spur_pair!(
+    "",
+    r#"
 [analysis]
 positions_per_cycle = 8
 mesh_cycle_from = -1.0
@@ -43,7 +21,8 @@ model = "MODEL"
 face_cells = 16
 face_order = 4
 
-"#;
+"#
+);
 
 fn run(scratch: &Scratch, model: &str, damage: &str) -> Output {
     scratch.write("case.toml", &(PAIR.replace("MODEL", model) + damage));

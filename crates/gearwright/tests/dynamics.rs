@@ -1,5 +1,6 @@
 //! Dynamics cases as a user meets them: everything promised is written and right, runs go on after an interruption, bad input is told.
 
+#[macro_use]
 mod common;
 
 use std::path::{Path, PathBuf};
@@ -11,32 +12,9 @@ use gearwright::run::RunObserver;
 use serde_json::Value;
 
 /// A pair in plane strain with two cracks on pinion tooth 0, which is in mesh about mesh cycle 0.
-const SPUR: &str = r#"kind = "spur-pair"
-
-[mesh]
-module_mm = 6.0
-pressure_angle_deg = 20.0
-centre_distance_mm = 150.1
-
-[pinion]
-teeth = 25
-profile_shift = 0.0
-tip_diameter_mm = 162.0
-root_diameter_mm = 135.0
-bore_diameter_mm = 60.0
-facewidth_mm = 16.0
-
-[gear]
-teeth = 25
-profile_shift = 0.0
-tip_diameter_mm = 162.0
-root_diameter_mm = 135.0
-bore_diameter_mm = 60.0
-facewidth_mm = 16.0
-
-[load]
-torque_n_m = 200.0
-
+const SPUR: &str = spur_pair!(
+    "",
+    r#"
 [analysis]
 model = "plane-strain"
 
@@ -44,7 +22,8 @@ model = "plane-strain"
 on = "pinion"
 tooth = 0
 crack.length_percent = [20.0, 60.0]
-"#;
+"#
+);
 
 const CASE: &str = r#"kind = "dynamics"
 title = "small"

@@ -1,5 +1,6 @@
 //! Lumped-pair cases as a user meets them: everything promised is written and right, bad input is told, sources agree.
 
+#[macro_use]
 mod common;
 
 use common::{Scratch, gearwright, text};
@@ -249,29 +250,14 @@ fn free_and_prescribed_input_have_the_natural_frequencies_of_their_moving_mass()
 }
 
 /// A small plane spur pair.
-const SPUR: &str = r#"kind = "spur-pair"
-[mesh]
-module_mm = 6.0
-pressure_angle_deg = 20.0
-centre_distance_mm = 150.1
-[pinion]
-teeth = 25
-tip_diameter_mm = 162.0
-root_diameter_mm = 135.0
-bore_diameter_mm = 60.0
-facewidth_mm = 16.0
-[gear]
-teeth = 25
-tip_diameter_mm = 162.0
-root_diameter_mm = 135.0
-bore_diameter_mm = 60.0
-facewidth_mm = 16.0
-[load]
-torque_n_m = 200.0
+const SPUR: &str = spur_pair!(
+    "",
+    r#"
 [analysis]
 positions_per_cycle = 20
 model = "plane-strain"
-"#;
+"#
+);
 
 /// A state whose teeth have a spacing error, over the two cycles of that tooth's engagement.
 fn spur_with_pitch_error() -> String {
@@ -280,7 +266,7 @@ fn spur_with_pitch_error() -> String {
         list[0] = "4.0";
         list.join(", ")
     });
-    SPUR.replacen("facewidth_mm = 16.0\n[gear]", &format!("facewidth_mm = 16.0\n{error}[gear]"), 1)
+    SPUR.replacen("facewidth_mm = 16.0\n\n[gear]", &format!("facewidth_mm = 16.0\n{error}\n[gear]"), 1)
         .replace("[analysis]\n", "[analysis]\nmesh_cycle_from = -1.0\nmesh_cycle_to = 1.0\n")
 }
 

@@ -1,6 +1,42 @@
 //! What the tests of the program share: running it in a scratch folder.
 // every test binary uses a part of it
-#![allow(dead_code)]
+#![allow(dead_code, unused_macros)]
+
+/// A spur-pair case: what follows the kind, two equal gears, what follows their load.
+macro_rules! spur_pair {
+    ($head:literal, $tail:literal) => {
+        concat!(
+            "kind = \"spur-pair\"\n",
+            $head,
+            r#"
+[mesh]
+module_mm = 6.0
+pressure_angle_deg = 20.0
+centre_distance_mm = 150.1
+
+[pinion]
+teeth = 25
+profile_shift = 0.0
+tip_diameter_mm = 162.0
+root_diameter_mm = 135.0
+bore_diameter_mm = 60.0
+facewidth_mm = 16.0
+
+[gear]
+teeth = 25
+profile_shift = 0.0
+tip_diameter_mm = 162.0
+root_diameter_mm = 135.0
+bore_diameter_mm = 60.0
+facewidth_mm = 16.0
+
+[load]
+torque_n_m = 200.0
+"#,
+            $tail
+        )
+    };
+}
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
