@@ -11,7 +11,6 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use faer::Mat;
-use gear_geom::{Gear, GearPair, GearSpec, ToothThickness};
 
 use super::flank::PairModes;
 use super::operator::Operator;
@@ -27,38 +26,26 @@ use crate::mass::{BodyMass, RigidMotion};
 use crate::mesh::{MeshDensity, PlaneMesh, SectorMesh};
 use crate::statics::{PairModel, PairModelOptions};
 
+#[path = "../../tests/common/pairs.rs"]
+mod pairs;
 #[path = "../../tests/common/ring.rs"]
 mod ring;
 
+use pairs::{TORQUE, pair};
+
 const STEPS: usize = 50;
-const TORQUE: f64 = 200.0;
 /// Rayleigh's (1/s).
 const ALPHA: f64 = 1500.0;
 /// Of the pinion (rad/s): the mesh passes through resonance at half of it, and teeth part.
 const SPEED: f64 = 1500.0;
 
-fn gear(teeth: u32) -> Gear {
-    let module = 6e-3;
-    let radius = 0.5 * module * f64::from(teeth);
-    Gear::new(&GearSpec {
-        teeth,
-        thickness: ToothThickness::AtReference(0.5 * std::f64::consts::PI * module - 0.05e-3),
-        tip_radius: radius + module,
-        root_radius: radius - 1.25 * module,
-        rim_radius: 0.4 * radius,
-        ..GearSpec::default()
-    })
-    .unwrap()
-}
-
 fn model() -> PairModel {
-    let pair = GearPair::new(gear(14), gear(17), 0.5 * 6e-3 * 31.0).unwrap();
     let mut options = PairModelOptions { face: FaceModel::PlaneStress, ..PairModelOptions::default() };
     options.contact.cells_per_half_width = 3.0;
     for member in [&mut options.pinion, &mut options.wheel] {
         member.mesh = MeshDensity { order: 2, density: 0.25 };
     }
-    PairModel::new(&pair, &options).unwrap()
+    PairModel::new(&pair(14, 17), &options).unwrap()
 }
 
 fn inertia(model: &PairModel, body: usize) -> RotorInertia {
