@@ -1,0 +1,1 @@
+//! Bodies and connections of a transmission, put together.

@@ -1,0 +1,1 @@
+//! Finite elements of a housing, and its reduction to an [`ElasticBody`](crate::elastic::ElasticBody).

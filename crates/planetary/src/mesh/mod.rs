@@ -1,0 +1,10 @@
+//! Force over approach of a tooth mesh.
+//!
+//! With hubs that are rigid and shafts that stay parallel, all that a mesh knows of the motion of its gears is one number, the *approach* along
+//! its line of action: how far the flanks would pass through each other if they were rigid, perfect involutes (m). What it answers is one
+//! number too, the normal force of all its tooth pairs together (N). The contact problem, solved once for each position and load, gives the
+//! curve between them; in time it is only read.
+
+mod law;
+
+pub use law::{MeshLaw, MeshResponse};
