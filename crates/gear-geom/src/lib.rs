@@ -8,6 +8,7 @@
 //! | [`modification`] | relief, crown, end relief, slope, measured deviation |
 //! | [`gear`] | one gear: specification, checks, derived sizes |
 //! | [`pair`] | two gears in mesh: working angle, contact ratio, backlash, interference, landmarks, kinematics |
+//! | [`planetary_train`] | sun, planets and ring: assembly, speeds, mesh phases, which tooth meets which when |
 //!
 //! Conventions. SI units and radians. In a gear's own frame the axis is `z`, mid-face is `z = 0`, and tooth 0 is centred on `+x`; tooth
 //! `k` follows at `2 pi k / N` counter-clockwise. The profile coordinate is the *roll distance* `s = sqrt(r^2 - r_b^2)` (m), measured
@@ -47,6 +48,7 @@ pub mod involute;
 pub mod modification;
 pub mod outline;
 pub mod pair;
+pub mod planetary_train;
 
 pub use damage::{
     BrokenCorner, CrackFront, CrackLength, CrackPath, CrackStart, Damage, Pit, PitShape, ProfileMeasure, RootCrack,
@@ -58,3 +60,6 @@ pub use gear::{FlankSide, Gear, GearKind, GearSpec, ToothThickness};
 pub use modification::{EndRelief, FlankModification, MeasuredDeviation, ProfileRelief, ReliefShape};
 pub use outline::{HalfToothOutline, OutlineSegment};
 pub use pair::{Finding, GearPair, Landmark, Landmarks, Member};
+pub use planetary_train::{
+    CentralMember, Engagement, MeshSite, PlanetaryTrain, PlanetaryTrainSpec, TrainError, TrainSpeeds, TrainTooth,
+};
