@@ -15,5 +15,8 @@
 
 pub mod elastic;
 pub mod engine;
+pub mod error;
 pub mod housing;
 pub mod mesh;
+
+pub use error::PlanetaryError;

@@ -26,11 +26,16 @@ pub enum Integrator {
 
 /// Weights of one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Weights {
+pub struct Weights {
+    /// Its length `h` (s).
     pub step: f64,
+    /// Newmark's `beta`.
     pub beta: f64,
+    /// Newmark's `gamma`.
     pub gamma: f64,
+    /// `alpha_m`.
     pub alpha_m: f64,
+    /// `alpha_f`.
     pub alpha_f: f64,
 }
 
@@ -48,7 +53,9 @@ impl Integrator {
         }
     }
 
-    pub(super) fn weights(&self, step: f64) -> Weights {
+    /// Weights of a step of this length (s).
+    #[must_use]
+    pub fn weights(&self, step: f64) -> Weights {
         match *self {
             Self::AverageAcceleration => Weights { step, beta: 0.25, gamma: 0.5, alpha_m: 0.0, alpha_f: 0.0 },
             Self::GeneralizedAlpha { spectral_radius: rho } => {
@@ -64,16 +71,19 @@ impl Integrator {
 
 impl Weights {
     /// Weight of the mass in the step matrix (1/s^2); all weights are over `1 - alpha_f`.
+    #[must_use]
     pub fn mass(&self) -> f64 {
         (1.0 - self.alpha_m) / (self.beta * self.step * self.step) / (1.0 - self.alpha_f)
     }
 
     /// Weight of the damping in the step matrix (1/s).
+    #[must_use]
     pub fn damping(&self) -> f64 {
         self.gamma / (self.beta * self.step)
     }
 
     /// What the mass multiplies on the right, from position, velocity and acceleration at the start.
+    #[must_use]
     pub fn mass_history(&self, q: f64, v: f64, a: f64) -> f64 {
         let h = self.step;
         let newmark = (q + h * v) / (self.beta * h * h) + (0.5 / self.beta - 1.0) * a;
@@ -81,6 +91,7 @@ impl Weights {
     }
 
     /// What the damping multiplies on the right.
+    #[must_use]
     pub fn damping_history(&self, q: f64, v: f64, a: f64) -> f64 {
         let h = self.step;
         let newmark = self.gamma / (self.beta * h) * q
@@ -90,11 +101,13 @@ impl Weights {
     }
 
     /// `alpha_f / (1 - alpha_f)`: weight of the start against the end.
+    #[must_use]
     pub fn start(&self) -> f64 {
         self.alpha_f / (1.0 - self.alpha_f)
     }
 
     /// Acceleration and velocity at the end from positions at both ends.
+    #[must_use]
     pub fn end(&self, q: [f64; 2], v: f64, a: f64) -> (f64, f64) {
         let h = self.step;
         let acceleration = (q[1] - q[0] - h * v) / (self.beta * h * h) - (0.5 / self.beta - 1.0) * a;

@@ -26,7 +26,7 @@ mod schedule;
 mod system;
 
 pub use impulse::{ImpulseReading, ImpulseSpec};
-pub use integrator::Integrator;
+pub use integrator::{Integrator, Weights};
 pub use options::{
     DynamicsOptions, DynamicsRequest, DynamicsState, InitialState, Motion, RotorInertia, RotorOptions, StepSolver,
     TorquePulse,
