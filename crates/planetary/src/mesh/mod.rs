@@ -4,7 +4,22 @@
 //! its line of action: how far the flanks would pass through each other if they were rigid, perfect involutes (m). What it answers is one
 //! number too, the normal force of all its tooth pairs together (N). The contact problem, solved once for each position and load, gives the
 //! curve between them; in time it is only read.
+//!
+//! | type | a mesh from |
+//! |---|---|
+//! | [`MeshTable`] | contact mechanics, sound or with damaged teeth ([`MeshTable::from_contact`], [`MeshTable::with_damage`]) |
+//! | [`LinearMesh`] | a stiffness and an error over the mesh cycle |
 
+mod contact;
+mod curve;
+mod error;
 mod law;
+mod linear;
+mod table;
 
+pub use contact::{DamagedTooth, TableOptions, force_curves};
+pub use curve::{ForceCurve, ForceCurveData, ForceKnot};
+pub use error::MeshError;
 pub use law::{MeshLaw, MeshResponse};
+pub use linear::{LinearMesh, Periodic};
+pub use table::{DamageWindow, MeshTable, MeshTableData};
