@@ -116,36 +116,37 @@ fn pit(pair: &GearPair, member: Member) -> Damage {
 }
 
 /// Cracked and pitted teeth of sun and ring: the table is the damaged model around the tooth's pair, and the sound one elsewhere; deeper cracks are
-/// softer. Where a tooth bends so much that the tip corner of its neighbour presses, fresh solutions differ among themselves by as much as cells are coarse for
-/// the corner's round: up to 0.9 % with 80 % cracked; and the edge of a pit is a cell wide.
+/// softer. Compared at a load of the table's own, where starts from neighbours may still choose other cells: between loads, damaged solutions differ by what cells leave open, the tip corner of a neighbour that the
+/// bent tooth presses (up to 0.9 % of the force with 80 % cracked), and the place of a pit's edge (6 % where a groove rides on its edges).
 #[test]
 fn invariant_damage_windows() {
+    let options = TableOptions { positions_per_cycle: 20, octaves: 3, ..options() };
+    let force = options.highest_force / 4.0;
     for (site, member) in [(MeshSite::SunPlanet, Member::Pinion), (MeshSite::PlanetRing, Member::Wheel)] {
-        let (model, sound) = plane(site);
+        let model = &plane(site).0;
+        let sound = MeshTable::from_contact(model, &options, &()).unwrap();
         let gears = model.pairing().pair();
         let teeth = i64::from(gears.gear(member).teeth());
         let number = 5;
         let mut before = 0.0;
-        let cracks = [(0.2, 2.5e-3), (0.5, 2.5e-3), (0.8, 1.2e-2)];
-        let cracks = cracks.map(|(part, tolerance)| (crack(gears, member, part), tolerance));
-        for (damage, tolerance) in cracks.into_iter().chain([(pit(gears, member), 1e-2)]) {
+        for damage in [0.2, 0.5, 0.8].map(|part| crack(gears, member, part)).into_iter().chain([pit(gears, member)]) {
             let is_pit = matches!(damage, Damage::Pit(_));
             let tooth = DamagedTooth { member, pair: number, damage: vec![damage.clone()] };
-            let table = sound.with_damage(model, &[tooth], &options(), &()).unwrap();
+            let table = sound.with_damage(model, &[tooth], &options, &()).unwrap();
             let mut damages = [vec![], vec![]];
             damages[usize::from(member == Member::Wheel)].push(ToothDamage { tooth: 0, damage });
             let damaged = model.with_damage(&damages).unwrap();
             let window = &table.data().windows[0];
-            assert!(window.curves.len() < 200, "{}", window.curves.len());
+            assert!(window.curves.len() < 80, "{}", window.curves.len());
             let mut largest = 0.0_f64;
-            for step in (-120..120).step_by(7) {
-                let cycle = f64::from(step) / 50.0;
-                let (approach, _) = fresh(&damaged, cycle, FORCE);
+            for step in (-48..48).step_by(3) {
+                let cycle = f64::from(step) / 20.0;
+                let (approach, _) = fresh(&damaged, cycle, force);
                 for turn in [-1, 0, 2] {
                     let answer = table.response(cycle + (number + turn * teeth) as f64, approach);
-                    assert!((answer.force / FORCE - 1.0).abs() < tolerance, "{site:?} {cycle}: {answer:?}");
+                    assert!((answer.force / force - 1.0).abs() < 1e-2, "{site:?} {cycle}: {answer:?}");
                 }
-                largest = largest.max(1.0 - FORCE / sound.response(cycle, approach).force);
+                largest = largest.max(1.0 - force / sound.response(cycle, approach).force);
             }
             println!("{site:?} force lost {largest:.4}, window {} from {}", window.curves.len(), window.first);
             assert!(if is_pit { largest > 0.05 } else { largest > before }, "{site:?} {largest} {before}");
