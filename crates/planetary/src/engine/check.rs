@@ -1,6 +1,6 @@
 //! What a transmission's numbers must be.
 
-use super::request::{RunRequest, Turning};
+use super::request::{RunRequest, TransmissionState, Turning};
 use super::spec::{Anchor, Bearing, BevelStage, BodyId, Mesh, PlanetaryStage, RigidBody, TransmissionSpec};
 use crate::elastic::ElasticBody;
 use crate::error::PlanetaryError;
@@ -210,5 +210,25 @@ impl RunRequest {
         not_negative(|| "output torque".into(), self.output_torque)?;
         finite(|| "mesh cycles travelled".into(), &[self.travelled])?;
         Ok(self.integrator.validate()?)
+    }
+}
+
+impl TransmissionState {
+    /// Checks a state for a transmission of so many coordinates and forces of connections.
+    pub(super) fn check(&self, coordinates: usize, connections: usize) -> Checked {
+        for (what, values, needed) in [
+            ("position", &self.position, coordinates),
+            ("velocity", &self.velocity, coordinates),
+            ("acceleration", &self.acceleration, coordinates),
+            ("force", &self.force, coordinates),
+            ("connection", &self.connection, connections),
+        ] {
+            let what = || format!("{what} of the state to start from");
+            if values.len() != needed {
+                return Err(PlanetaryError::Shape { what: what(), found: values.len(), needed });
+            }
+            finite(what, values)?;
+        }
+        Ok(())
     }
 }
