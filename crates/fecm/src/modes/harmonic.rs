@@ -11,7 +11,7 @@
 
 use faer::Mat;
 
-use super::krylov::{Pencil, lowest};
+use super::krylov::{BLOCK, Pencil, lowest};
 use super::sector::{HalfSector, Mirror};
 use crate::error::FecmError;
 use crate::linalg::{DenseCholesky, add_block, product};
@@ -105,7 +105,7 @@ impl Harmonic {
             first += half.held.ncols();
         }
         let pencil = DensePencil { factor: DenseCholesky::new(stiffness, "nodal diameter")?, mass };
-        let found = lowest(&pencil, count, "nodal diameter")?;
+        let found = lowest(&pencil, count, BLOCK, "nodal diameter")?;
         let mut first = cut;
         let parts = [0, 1].map(|index| {
             let (half, factors) = (&halves[index], &self.factors[index]);

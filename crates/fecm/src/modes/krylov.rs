@@ -12,7 +12,7 @@ use crate::error::FecmError;
 use crate::linalg::{product, symmetric_eigen, symmetrise};
 
 /// A symmetric positive definite pair of matrices, known by what they do.
-pub(super) trait Pencil {
+pub trait Pencil {
     /// Number of unknowns.
     fn size(&self) -> usize;
     /// `K^-1 f`.
@@ -22,29 +22,34 @@ pub(super) trait Pencil {
 }
 
 /// Eigenpairs, ascending.
-pub(super) struct Eigenpairs {
+pub struct Eigenpairs {
     /// `omega^2` (rad^2/s^2).
-    pub(super) values: Vec<f64>,
+    pub values: Vec<f64>,
     /// Eigenvectors of unit modal mass, one a column.
-    pub(super) vectors: Mat<f64>,
+    pub vectors: Mat<f64>,
 }
 
-/// Width of a block.
-const BLOCK: usize = 5;
+/// Width of a block where nothing asks for more: eigenvalues of this multiplicity are found.
+pub const BLOCK: usize = 5;
 /// Residual of an accepted Ritz pair, relative to its Ritz value: the eigenvalue is then good to the square of it over the gap.
 const RESIDUAL: f64 = 1e-8;
 /// Part of its length that a field must keep after what is known of it is taken away, to count as new. Eigenvalues feel what is
 /// left out by its square; what little is left of longer differences is rounding.
 const NEW: f64 = 1e-6;
 
-/// The lowest `count` eigenpairs, or all if there are fewer.
-pub(super) fn lowest(pencil: &impl Pencil, count: usize, what: &'static str) -> Result<Eigenpairs, FecmError> {
+/// The lowest `count` eigenpairs, or all if there are fewer, by blocks of the given width (at least 1): wide blocks make few, cheap solutions of
+/// many right-hand sides, narrow ones a smaller basis.
+///
+/// # Errors
+/// [`FecmError::EigenNotConverged`] naming `what`.
+pub fn lowest(pencil: &impl Pencil, count: usize, block: usize, what: &'static str) -> Result<Eigenpairs, FecmError> {
     let size = pencil.size();
     if count == 0 || size == 0 {
         return Ok(Eigenpairs { values: Vec::new(), vectors: Mat::zeros(size, 0) });
     }
-    if 4 * (count + BLOCK) < size {
-        let found = expand(pencil, scattered(size, BLOCK), count, what)?;
+    let block = block.max(1);
+    if 4 * (count + block) < size {
+        let found = expand(pencil, scattered(size, block), count, what)?;
         if found.values.len() >= count {
             return Ok(found);
         }
@@ -54,14 +59,20 @@ pub(super) fn lowest(pencil: &impl Pencil, count: usize, what: &'static str) -> 
 
 /// Grows a Krylov space from a start until `count` pairs are found or the space is closed.
 fn expand(pencil: &impl Pencil, start: Mat<f64>, count: usize, what: &'static str) -> Result<Eigenpairs, FecmError> {
+    let start_width = start.ncols();
     let lengths = lengths(&start, &pencil.mass(&start));
     let mut basis = Mat::zeros(pencil.size(), 0);
     let mut momenta = Mat::zeros(pencil.size(), 0);
+    // room for what is likely needed, so that growing does not copy
+    let likely = (2 * count + 4 * start_width).min(pencil.size());
+    basis.reserve(pencil.size(), likely);
+    momenta.reserve(pencil.size(), likely);
     let mut block = orthonormal(pencil, start, &lengths)?;
     let mut projected = Mat::<f64>::zeros(0, 0);
-    let mut steps = 0;
+    let wanted_total = (count + 2 * start_width).min(pencil.size());
+    // the small eigenproblem is solved again when the basis has grown by an eighth
+    let mut due = wanted_total;
     loop {
-        steps += 1;
         let first = basis.ncols();
         let moved = pencil.mass(&block);
         append(&mut basis, &block);
@@ -89,8 +100,8 @@ fn expand(pencil: &impl Pencil, start: Mat<f64>, count: usize, what: &'static st
             }
         }
         let closed = follower.ncols() == 0;
-        let due = total >= (count + 2 * BLOCK).min(pencil.size()) && steps % 2 == 0;
-        if closed || due {
+        if closed || total >= due {
+            due = total + (2 * start_width).max(total / 8);
             let mut small = projected.clone();
             symmetrise(&mut small);
             // ascending Ritz values of K^-1 M: the last ones are the lowest frequencies
@@ -141,7 +152,7 @@ pub(super) fn lengths(fields: &Mat<f64>, moved: &Mat<f64>) -> Vec<f64> {
 }
 
 /// Adds columns.
-pub(super) fn append(all: &mut Mat<f64>, columns: &Mat<f64>) {
+pub fn append(all: &mut Mat<f64>, columns: &Mat<f64>) {
     let (rows, first) = (all.nrows(), all.ncols());
     all.resize_with(rows, first + columns.ncols(), |i, j| columns[(i, j - first)]);
 }

@@ -18,7 +18,7 @@
 //! Verified in `tests/modes.rs` against the full gear assembled as one body, closed forms, and static completeness.
 
 mod harmonic;
-mod krylov;
+pub mod krylov;
 mod ring;
 mod sector;
 
