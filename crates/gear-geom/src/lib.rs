@@ -8,6 +8,7 @@
 //! | [`modification`] | relief, crown, end relief, slope, measured deviation |
 //! | [`gear`] | one gear: specification, checks, derived sizes |
 //! | [`pair`] | two gears in mesh: working angle, contact ratio, backlash, interference, landmarks, kinematics |
+//! | [`bevel`] | spiral bevel gears: cones, virtual spur gears, line of action |
 //! | [`planetary_train`] | sun, planets and ring: assembly, speeds, mesh phases, which tooth meets which when |
 //!
 //! Conventions. SI units and radians. In a gear's own frame the axis is `z`, mid-face is `z = 0`, and tooth 0 is centred on `+x`; tooth
@@ -40,6 +41,7 @@
     warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)
 )]
 
+pub mod bevel;
 pub mod damage;
 pub mod error;
 pub mod fillet;
@@ -50,6 +52,7 @@ pub mod outline;
 pub mod pair;
 pub mod planetary_train;
 
+pub use bevel::{BevelPair, BevelPlacement, BevelSpec, Hand, LineOfAction};
 pub use damage::{
     BrokenCorner, CrackFront, CrackLength, CrackPath, CrackStart, Damage, Pit, PitShape, ProfileMeasure, RootCrack,
     ToothDamage,

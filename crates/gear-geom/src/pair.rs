@@ -414,6 +414,15 @@ impl GearPair {
         }
     }
 
+    /// Mesh cycle of the coast flanks at one of the driving flanks, pinion in place, wheel turned through the backlash: that of the mirrored pair, in which the
+    /// coast flanks drive. It runs backwards; pairs are numbered anew, and whole cycles do not count.
+    #[must_use]
+    pub fn coast_cycle(&self, mesh_cycle: f64) -> f64 {
+        let radius = self.working_pitch_radius(Member::Pinion);
+        let pitch = 2.0 * std::f64::consts::PI * radius / f64::from(self.pinion.teeth());
+        self.pinion.thickness_at(radius) / pitch - mesh_cycle
+    }
+
     /// Angle of the centre line of a gear's tooth of pair `pair` (rad, in space), for unloaded unmodified flanks in contact.
     #[must_use]
     pub fn tooth_angle(&self, member: Member, pair: i32, mesh_cycle: f64) -> f64 {

@@ -275,3 +275,20 @@ fn invariant_sides_are_mirror_images() {
         (pair.pinion().flank_point(FlankSide::Upper, 0.018), pair.pinion().flank_point(FlankSide::Lower, 0.018));
     assert_eq!((a.x, a.y), (b.x, -b.y));
 }
+
+/// Coast flanks: the pair seen in a mirror, its wheel turned through the backlash, has teeth where a pair at the coast flanks' mesh cycle has them.
+#[test]
+fn invariant_coast_cycle() {
+    for pair in [nonunity_pair(), ring_pair()] {
+        for mesh_cycle in [0.0, 0.3, -1.7] {
+            let mirrored = pair.coast_cycle(mesh_cycle);
+            let opening = pair.closing_direction() * pair.backlash() / pair.working_pitch_radius(Member::Wheel);
+            for (member, turned) in [(Member::Pinion, 0.0), (Member::Wheel, -opening)] {
+                let driving = pair.tooth_angle(member, 0, mesh_cycle) + turned;
+                let coasting = pair.tooth_angle(member, 0, mirrored);
+                let teeth = (coasting + driving) / std::f64::consts::TAU * f64::from(pair.gear(member).teeth());
+                assert!((teeth - teeth.round()).abs() < 1e-9, "{member:?} {mesh_cycle}: {teeth}");
+            }
+        }
+    }
+}

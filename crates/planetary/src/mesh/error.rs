@@ -1,6 +1,7 @@
 //! What can be wrong with a mesh.
 
 use fecm::{FecmError, PositionStatus};
+use gear_geom::GeometryErrors;
 use thiserror::Error;
 
 /// Faults of mesh laws.
@@ -37,6 +38,9 @@ pub enum MeshError {
     /// The contact model failed.
     #[error("contact of the mesh: {0}")]
     Contact(#[from] FecmError),
+    /// Gears that cannot be.
+    #[error("gears of the mesh: {0}")]
+    Geometry(#[from] GeometryErrors),
     /// The contact model gives too few usable loads at a position.
     #[error(
         "at mesh cycle {mesh_cycle:.4}, {usable} of {loads} loads up to {highest_force:.1} N have a solution, two are needed; the highest ended as \

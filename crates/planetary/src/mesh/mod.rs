@@ -8,6 +8,7 @@
 //! | type | a mesh from |
 //! |---|---|
 //! | [`MeshTable`] | contact mechanics, sound or with damaged teeth ([`MeshTable::from_contact`], [`MeshTable::with_damage`]) |
+//! | [`SlicedMesh`] | inclined teeth as slices of straight ones: spiral bevel gears ([`SlicedMesh::bevel`], [`virtual_table`]) |
 //! | [`LinearMesh`] | a stiffness and an error over the mesh cycle |
 
 mod contact;
@@ -15,6 +16,7 @@ mod curve;
 mod error;
 mod law;
 mod linear;
+mod sliced;
 mod table;
 
 pub use contact::{DamagedTooth, TableOptions, force_curves};
@@ -22,4 +24,5 @@ pub use curve::{ForceCurve, ForceCurveData, ForceKnot};
 pub use error::MeshError;
 pub use law::{MeshLaw, MeshResponse};
 pub use linear::{LinearMesh, Periodic};
+pub use sliced::{BevelSlices, Slice, SlicedMesh, virtual_table};
 pub use table::{DamageWindow, MeshTable, MeshTableData};
