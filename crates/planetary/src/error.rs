@@ -47,15 +47,15 @@ pub enum PlanetaryError {
     },
     /// Loads that nothing holds.
     #[error(
-        "no equilibrium at mesh cycle {cycle:.3}: after {iterations} iterations a part still moves by {motion:.3e} of the motion from the start"
+        "no equilibrium at mesh cycle {cycle:.3}: after {iterations} iterations {imbalance:.3e} of the load is out of balance"
     )]
     NoEquilibrium {
         /// Mesh cycles travelled.
         cycle: f64,
         /// Iterations.
         iterations: usize,
-        /// Change in the last iteration, relative.
-        motion: f64,
+        /// Forces out of balance, relative to the load.
+        imbalance: f64,
     },
     /// The motion has left the range of numbers, or a mesh its base pitch.
     #[error("the motion is lost at step {step} (mesh cycle {cycle:.3}): {what}")]

@@ -56,16 +56,22 @@ const MOST_HALVINGS: usize = 12;
 const MOST_ROUNDS: usize = 20;
 const SWEEPS: usize = 10;
 const BISECTIONS: usize = 120;
-/// Residual wanted, relative to the approaches: rounding of their differences.
+/// Residual wanted, relative to the displacements whose differences the approaches are: their rounding.
 const TOLERANCE: f64 = 1e-13;
 /// Smallest pivot of `1 + W K` against its diagonal: it cannot be small, this only refuses numbers out of range.
 const PIVOT: f64 = 1e-14;
 
-struct Problem<'a> {
-    touches: &'a [Touch<'a>],
-    compliance: &'a Square,
-    free: &'a [f64],
-    before: &'a [f64],
+/// What is asked.
+pub(super) struct Problem<'a> {
+    pub touches: &'a [Touch<'a>],
+    /// `W`.
+    pub compliance: &'a Square,
+    /// `x_0`.
+    pub free: &'a [f64],
+    /// `F_0`.
+    pub before: &'a [f64],
+    /// Size of the displacements that make up the approaches (m).
+    pub scale: f64,
 }
 
 impl Problem<'_> {
@@ -82,6 +88,10 @@ impl Problem<'_> {
             worst = worst.max(out.residual[i].abs());
         }
         worst
+    }
+
+    fn is_solved(&self, x: &[f64], worst: f64) -> bool {
+        worst <= TOLERANCE * x.iter().fold(self.scale, |most, x| most.max(x.abs()))
     }
 
     /// The root of one mesh with the forces of the others given.
@@ -108,27 +118,25 @@ struct Evaluation {
     residual: Vec<f64>,
 }
 
-/// Approaches and forces, from the approaches `free` at the forces `before`.
-pub(super) fn solve(
-    touches: &[Touch<'_>],
-    compliance: &Square,
-    free: &[f64],
-    before: &[f64],
-    forces: &mut [f64],
-) -> ContactReport {
-    let n = touches.len();
-    let problem = Problem { touches, compliance, free, before };
+/// Forces.
+pub(super) fn solve(problem: &Problem<'_>, forces: &mut [f64]) -> ContactReport {
+    let n = problem.free.len();
     let mut now = Evaluation { forces: vec![0.0; n], slopes: vec![0.0; n], residual: vec![0.0; n] };
     let mut trial = now.clone();
-    let mut x = free.to_vec();
+    let mut x = problem.free.to_vec();
     let mut worst = problem.evaluate(&x, &mut now);
-    let scale = |x: &[f64]| x.iter().zip(free).fold(0.0_f64, |most, (x, free)| most.max(x.abs()).max(free.abs()));
     let mut report = ContactReport::default();
+    let mut begun = f64::INFINITY;
     for _ in 0..MOST_ROUNDS {
-        newton(&problem, &mut x, &mut now, &mut trial, &mut worst, &mut report, &scale);
-        if worst <= TOLERANCE * scale(&x) {
+        newton(problem, &mut x, &mut now, &mut trial, &mut worst, &mut report);
+        if problem.is_solved(&x, worst) {
             break;
         }
+        // no better than where the round began: rounding
+        if worst > 0.5 * begun {
+            break;
+        }
+        begun = worst;
         report.fallback = true;
         for _ in 0..SWEEPS {
             for i in 0..n {
@@ -150,11 +158,10 @@ fn newton(
     trial: &mut Evaluation,
     worst: &mut f64,
     report: &mut ContactReport,
-    scale: &impl Fn(&[f64]) -> f64,
 ) {
     let n = x.len();
     for _ in 0..MOST_NEWTON {
-        if *worst <= TOLERANCE * scale(x) {
+        if problem.is_solved(x, *worst) {
             return;
         }
         let mut matrix = problem.compliance.clone();

@@ -77,7 +77,7 @@ impl Transmission {
     }
 
     /// `M^(-1/2) x`.
-    fn unit_mass(&self, x: &[f64]) -> Vec<f64> {
+    pub(super) fn unit_mass(&self, x: &[f64]) -> Vec<f64> {
         let rigid = self.system.rigid();
         let mut out = Vec::with_capacity(x.len());
         for (body, x) in self.system.inertia.iter().zip(x[..rigid].chunks_exact(RIGID)) {
@@ -91,7 +91,7 @@ impl Transmission {
     }
 }
 
-fn square(x: &[f64]) -> f64 {
+pub(super) fn square(x: &[f64]) -> f64 {
     x.iter().map(|x| x * x).sum()
 }
 

@@ -16,7 +16,7 @@
 
 use fecm::dynamics::Weights;
 
-use super::contact::{ContactReport, Touch, solve};
+use super::contact::{ContactReport, Problem, Touch, solve};
 use super::dense::{Square, dot};
 use super::rows::{HousingPart, RIGID};
 use super::system::System;
@@ -182,6 +182,12 @@ impl Placed {
         }
     }
 
+    /// Largest displacement of a body that goes into an approach, rows from this one on.
+    fn magnitude(&self, rigid: &[f64], first: usize) -> f64 {
+        let parts = self.parts.iter().filter(|part| part.row >= first);
+        parts.fold(0.0, |most, part| most.max(dot6(&part.values, &rigid[RIGID * part.body..]).abs()))
+    }
+
     /// One row over all coordinates.
     pub fn row(&self, system: &System, index: usize) -> Vec<f64> {
         let rigid = system.rigid();
@@ -325,7 +331,9 @@ pub(super) fn step(
         }
     }
     let mut free = vec![0.0; count];
-    placed.displacements(&solve_bodies(&load), &motion, seat, &mut free);
+    let rigid_motion = solve_bodies(&load);
+    placed.displacements(&rigid_motion, &motion, seat, &mut free);
+    let mut scale = placed.magnitude(&rigid_motion, springs);
 
     // rates: d' = rate d - lag
     let mut lag = vec![0.0; count];
@@ -357,7 +365,7 @@ pub(super) fn step(
         } else {
             let damper = if whole.is_finite() { spring.damping / whole * lag[k] } else { 0.0 };
             *matrix.at_mut(k, k) += 1.0 / whole;
-            answer[k] -= history.forces[k] / whole - damper;
+            answer[k] -= history.forces[k] / whole + damper;
         }
     }
     if !matrix.factor(PIVOT) {
@@ -381,6 +389,7 @@ pub(super) fn step(
     for i in 0..meshes {
         // row of W from a mesh to the springs
         let row: Vec<f64> = (0..springs).map(|k| w.at(springs + i, k)).collect();
+        scale = scale.max(row.iter().zip(&answer).map(|(w, l)| (w * l).abs()).sum::<f64>());
         approach[i] -= dot(&row, &answer);
         for j in 0..meshes {
             *compliance.at_mut(i, j) -= dot(&row, &on_springs[j]);
@@ -399,7 +408,8 @@ pub(super) fn step(
         .collect();
     let before = &history.forces[springs..];
     let mut forces = vec![0.0; count];
-    let report = solve(&touches, &compliance, &approach, before, &mut forces[springs..]);
+    let problem = Problem { touches: &touches, compliance: &compliance, free: &approach, before, scale };
+    let report = solve(&problem, &mut forces[springs..]);
     for j in 0..meshes {
         let change = forces[springs + j] - before[j];
         for (out, through) in answer.iter_mut().zip(&on_springs[j]) {

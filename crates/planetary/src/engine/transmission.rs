@@ -1,5 +1,6 @@
 //! A transmission made ready: rest, natural modes, motion.
 
+use super::natural::square;
 use super::request::{Equilibrium, RunRequest, TransmissionRun, TransmissionState};
 use super::rows::RIGID;
 use super::run::Runner;
@@ -28,13 +29,18 @@ pub struct Load {
     pub carrier_speed: f64,
 }
 
-/// Weights of the mass in the search for rest (1/s^2): first, factor, last. The last is that of a very low natural frequency (1.6 Hz), the first lets the
-/// meshes close.
+/// Weights of the mass in the search for rest (1/s^2): first, factor, last. The first lets the meshes close, the last is that of a natural frequency of
+/// 1.6 Hz.
 const PROXIMAL: [f64; 3] = [1e8, 0.01, 1e2];
 /// Proximal steps to give up after.
 const MOST_PROXIMAL: usize = 300;
-/// Motion of the last step, relative to the motion from the start, in the metric of the masses.
-const REST: f64 = 1e-11;
+/// Forces out of balance, relative to the load, each over the root of its mass: wanted, and accepted where the imbalance no longer falls, which is the
+/// rounding of very stiff connections in a soft whole.
+const REST: [f64; 2] = [1e-11, 1e-6];
+/// Proximal steps without a smaller imbalance, after which it no longer falls.
+const STALLED: usize = 8;
+/// Last steps, of a weight that leaves less rounding of the forces in the motion.
+const POLISH: [f64; 2] = [1e6, 1e6];
 
 impl Transmission {
     /// Checks and assembles.
@@ -96,27 +102,38 @@ impl Transmission {
         let external = self.external(place, load.output_torque, load.carrier_speed);
         let still = vec![0.0; system.size()];
         let (mut position, mut forces) = (still.clone(), vec![0.0; system.rows.len()]);
-        let [mut rho, factor, least] = PROXIMAL;
-        let mut change = f64::INFINITY;
-        for iteration in 1..=MOST_PROXIMAL {
-            let mut right = self.masses_times(&position);
+        let proximal = |rho: f64, position: &[f64], forces: &[f64]| {
+            let mut right = self.masses_times(position);
             right.iter_mut().for_each(|value| *value *= rho);
             right.iter_mut().zip(&external).for_each(|(value, force)| *value += force);
-            let history = History { load: &right, velocity: &still, expected: &still, speed: 0.0, forces: &forces };
-            let next = step(system, &Operator::resting(system, rho), place, &history)?;
+            let history = History { load: &right, velocity: &still, expected: &still, speed: 0.0, forces };
+            step(system, &Operator::resting(system, rho), place, &history)
+        };
+        let whole = self.unit_mass(&[&external[..], &still[system.rigid()..]].concat());
+        let size = square(&whole).sqrt();
+        let [mut rho, factor, least] = PROXIMAL;
+        let (mut imbalance, mut least_imbalance, mut stalled) = (f64::INFINITY, f64::INFINITY, 0);
+        for iteration in 1..=MOST_PROXIMAL {
+            let next = proximal(rho, &position, &forces)?;
             let moved: Vec<f64> = next.position.iter().zip(&position).map(|(a, b)| a - b).collect();
-            let (moved, size) = (self.energy_norm(&moved), self.energy_norm(&next.position));
-            change = if size > 0.0 { moved / size } else { 0.0 };
-            if !change.is_finite() {
+            let moved = self.masses_times(&moved).iter().zip(&moved).map(|(a, b)| a * b).sum::<f64>().sqrt();
+            imbalance = rho * moved;
+            (position, forces) = (next.position, next.forces);
+            if !imbalance.is_finite() {
                 break;
             }
-            if rho <= least && change <= REST {
-                return Ok(self.at_rest(next, &external, iteration));
+            stalled = if imbalance < 0.5 * least_imbalance { 0 } else { stalled + 1 };
+            least_imbalance = least_imbalance.min(imbalance);
+            let wanted = if stalled < STALLED { REST[0] } else { REST[1] };
+            if rho <= least && imbalance <= wanted * size {
+                let [first, last] = POLISH;
+                let next = proximal(first, &position, &forces)?;
+                return Ok(self.at_rest(proximal(last, &next.position, &next.forces)?, &external, iteration));
             }
-            (position, forces) = (next.position, next.forces);
             rho = (rho * factor).max(least);
         }
-        Err(PlanetaryError::NoEquilibrium { cycle: load.travelled, iterations: MOST_PROXIMAL, motion: change })
+        let relative = imbalance / size.max(f64::MIN_POSITIVE);
+        Err(PlanetaryError::NoEquilibrium { cycle: load.travelled, iterations: MOST_PROXIMAL, imbalance: relative })
     }
 
     fn at_rest(&self, found: Stepped, external: &[f64], iterations: usize) -> Equilibrium {
@@ -157,10 +174,6 @@ impl Transmission {
         }
         out.extend_from_slice(&x[rigid..]);
         out
-    }
-
-    fn energy_norm(&self, x: &[f64]) -> f64 {
-        self.masses_times(x).iter().zip(x).map(|(a, b)| a * b).sum::<f64>().sqrt()
     }
 
     /// Makes ready to run, piece by piece.

@@ -1,0 +1,316 @@
+//! Transmissions in motion.
+
+mod support;
+
+use std::f64::consts::{PI, TAU};
+
+use fecm::dynamics::Integrator;
+use planetary::engine::{
+    Anchor, Bearing, BodyId, Load, RunRequest, Start, Transmission, TransmissionRun, TransmissionSpec, Turning,
+};
+use support::{STANDING_AXES, equal, mesh, rigid_ring, train, with_coast};
+
+const TORQUE: f64 = 6106.0;
+/// Of the carrier at 6060 rpm of the dissertation's pinion (rad/s).
+const SPEED: f64 = 347.5 * TAU / 60.0;
+
+fn steady(steps_per_cycle: usize, record_steps: usize) -> RunRequest {
+    RunRequest {
+        turning: Turning::Steady { carrier_speed: SPEED, steps_per_cycle },
+        output_torque: TORQUE,
+        travelled: 0.0,
+        start: Start::Equilibrium,
+        settle_steps: 0,
+        record_steps,
+        record_motion: true,
+        integrator: Integrator::AverageAcceleration,
+    }
+}
+
+fn run(spec: &TransmissionSpec, request: &RunRequest) -> TransmissionRun {
+    Transmission::new(spec).unwrap().run(request, &()).unwrap()
+}
+
+fn in_housing(angles: &[f64], depth: f64) -> TransmissionSpec {
+    let mut spec = train(angles, depth);
+    spec.housing = Some(rigid_ring(0.15, [2e9, 20.0], [5e7, 0.3], 0.05));
+    spec.bearings[0].anchor = Anchor::Port("axis".into());
+    spec
+}
+
+/// Enough damping to be steady soon.
+fn damp(spec: &mut TransmissionSpec) {
+    for bearing in &mut spec.bearings {
+        bearing.damping = bearing.stiffness.map(|k| 5e-5 * k);
+    }
+    for planet in &mut spec.stage.planets {
+        planet.bearing_damping = planet.bearing_stiffness.map(|k| 5e-5 * k);
+        (planet.sun_mesh.damping, planet.ring_mesh.damping) = (5e4, 5e4);
+    }
+}
+
+fn undamped(mut spec: TransmissionSpec) -> TransmissionSpec {
+    spec.bearings.iter_mut().for_each(|bearing| bearing.damping = [0.0; 6]);
+    spec.stage.planets.iter_mut().for_each(|planet| planet.bearing_damping = [0.0; 5]);
+    if let Some(housing) = &mut spec.housing {
+        housing.damping_ratios.fill(0.0);
+    }
+    spec
+}
+
+/// A planet that only turns, on a torsion spring, against the teeth of a sun that stands: an oscillator of one stiffness in contact, another apart.
+fn one_mesh(torsion: f64) -> TransmissionSpec {
+    let inf = f64::INFINITY;
+    let mut spec = undamped(train(&[0.7], 0.0));
+    for bearing in &mut spec.bearings {
+        bearing.stiffness = [inf; 6];
+    }
+    spec.bearings[0].stiffness[5] = 0.0;
+    spec.stage.planets[0].bearing_stiffness = [inf; 5];
+    spec.stage.planets[0].ring_mesh = mesh(0.0, 0.0, 0.0);
+    spec.bearings.push(Bearing {
+        name: "torsion".into(),
+        body: BodyId::Planet(0),
+        anchor: Anchor::Ground,
+        position: [0.0; 3],
+        axes: STANDING_AXES,
+        stiffness: [0.0, 0.0, 0.0, 0.0, 0.0, torsion],
+        damping: [0.0; 6],
+    });
+    spec
+}
+
+/// Place of the planet's rotation among the coordinates.
+const PLANET_ROTATION: usize = 12 + 5;
+
+#[test]
+fn order_of_an_oscillator_that_parts_from_its_mesh() {
+    let torsion = 2e5;
+    let spec = one_mesh(torsion);
+    let transmission = Transmission::new(&spec).unwrap();
+    let (inertia, radius) = (spec.stage.planets[0].polar, spec.stage.planet_base_radius);
+    let inside = ((5e8 * radius * radius + torsion) / inertia).sqrt();
+    let outside = (torsion / inertia).sqrt();
+    let (period, rate) = (PI / inside + PI / outside, 0.5);
+    let rest = transmission.equilibrium(&Load { travelled: 0.0, output_torque: 0.0, carrier_speed: 0.0 }).unwrap();
+    let mut state = rest.state;
+    state.velocity[PLANET_ROTATION] = rate;
+    // after 5.3 periods: in contact again, 0.3 periods in or past half a wave of it
+    let time = 5.3 * period;
+    let phase = 0.3 * period;
+    let exact = if phase < PI / inside {
+        rate / inside * (inside * phase).sin()
+    } else {
+        -rate / outside * (outside * (phase - PI / inside)).sin()
+    };
+    let errors: Vec<f64> = [400, 800, 1600, 3200]
+        .map(|steps| {
+            let request = RunRequest {
+                turning: Turning::Standing { time_step: time / f64::from(steps) },
+                output_torque: 0.0,
+                start: Start::Given(Box::new(state.clone())),
+                ..steady(50, steps as usize)
+            };
+            let end = transmission.run(&request, &()).unwrap();
+            assert!((5..=6).contains(&end.meshes[0].losses));
+            (end.state.position[PLANET_ROTATION] - exact).abs() / (rate / outside)
+        })
+        .to_vec();
+    let order = (errors[0] / errors[3]).log2() / 3.0;
+    assert!(order > 1.8 && errors[3] < 1e-3, "{errors:?}");
+}
+
+#[test]
+fn order_two_with_bearings_of_any_stiffness() {
+    for (integrator, stiffness) in [
+        (Integrator::AverageAcceleration, 4e8),
+        (Integrator::GeneralizedAlpha { spectral_radius: 0.8 }, 4e8),
+        (Integrator::GeneralizedAlpha { spectral_radius: 0.8 }, 1e12),
+        (Integrator::GeneralizedAlpha { spectral_radius: 0.8 }, f64::INFINITY),
+    ] {
+        let mut spec = in_housing(&[0.1, 1.9, 4.4], 0.1);
+        for planet in &mut spec.stage.planets {
+            planet.bearing_stiffness[..2].fill(stiffness);
+            planet.sun_mesh.damping = 1000.0;
+            planet.ring_mesh.damping = 1000.0;
+        }
+        let cycles = 2;
+        let end = |steps: usize| {
+            let request = RunRequest { integrator, ..steady(steps, cycles * steps) };
+            let run = run(&spec, &request);
+            assert!(run.meshes.iter().all(|mesh| mesh.steps_apart == 0));
+            run.state.position
+        };
+        let exact = end(1280);
+        let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let errors: Vec<f64> = [40, 80, 160, 320]
+            .into_iter()
+            .map(|steps| {
+                let difference: Vec<f64> = end(steps).iter().zip(&exact).map(|(a, b)| a - b).collect();
+                norm(&difference) / norm(&exact)
+            })
+            .collect();
+        let order = (errors[1] / errors[3]).log2() / 2.0;
+        assert!(order > 1.8, "{integrator:?} {stiffness:e}: {errors:?}");
+    }
+}
+
+/// Kinetic energy, energy of springs, meshes and housing, and of the load (J).
+fn energy(spec: &TransmissionSpec, run: &TransmissionRun) -> f64 {
+    let state = &run.state;
+    let ids = spec.body_ids();
+    let mut sum = 0.0;
+    for (index, id) in ids.iter().enumerate() {
+        let body = spec.body(*id).unwrap();
+        let masses = [body.mass, body.mass, body.mass, body.transverse, body.transverse, body.polar];
+        let rates = &state.velocity[6 * index..6 * index + 6];
+        sum += masses.iter().zip(rates).map(|(m, v)| 0.5 * m * v * v).sum::<f64>();
+    }
+    if let Some(housing) = &spec.housing {
+        for (k, w) in housing.frequencies.iter().enumerate() {
+            let i = 6 * ids.len() + k;
+            sum += 0.5 * (state.velocity[i].powi(2) + (w * state.position[i]).powi(2));
+        }
+    }
+    for (index, record) in run.bearings.iter().enumerate() {
+        let stiffness: Vec<f64> = match spec.stage.planets.get(index) {
+            Some(planet) => planet.bearing_stiffness.to_vec(),
+            None => spec.bearings[index - spec.stage.planets.len()].stiffness.to_vec(),
+        };
+        for (load, k) in record.load.iter().zip(stiffness).filter(|(_, k)| *k > 0.0) {
+            sum += 0.5 * load.last().unwrap().powi(2) / k;
+        }
+    }
+    for mesh in &run.meshes {
+        sum += 0.5 * mesh.force.last().unwrap() * mesh.approach.last().unwrap();
+    }
+    sum + TORQUE * state.position[6 + 5]
+}
+
+#[test]
+fn invariant_energy_of_an_undamped_transmission_at_rest_position() {
+    let spec = undamped(in_housing(&[0.1, 1.9, 4.4], 0.0));
+    let transmission = Transmission::new(&spec).unwrap();
+    let load = Load { travelled: 0.3, output_torque: TORQUE, carrier_speed: 0.0 };
+    let mut state = transmission.equilibrium(&load).unwrap().state;
+    for (k, value) in state.velocity.iter_mut().enumerate().skip(6) {
+        *value = 1e-3 * (k as f64).sin();
+    }
+    let request = RunRequest {
+        turning: Turning::Standing { time_step: 2e-5 },
+        travelled: 0.3,
+        start: Start::Given(Box::new(state)),
+        ..steady(50, 0)
+    };
+    let mut runner = transmission.start(&request).unwrap();
+    let first = runner.record(1, &()).unwrap();
+    let later = runner.record(4000, &()).unwrap();
+    assert!(later.meshes.iter().all(|mesh| mesh.steps_apart == 0));
+    let kinetic: f64 = 1e-6;
+    let (before, after) = (energy(&spec, &first), energy(&spec, &later));
+    // against the energy of the motion put in, not that of the preload
+    assert!((after - before).abs() < 1e-6 * kinetic.max(1e-6), "{before} {after}");
+}
+
+#[test]
+fn invariant_constant_meshes_turn_without_exciting() {
+    // three unequal planets load a ring on equal springs: in the carrier's axes nothing changes
+    let mut spec = in_housing(&[0.1, 1.9, 4.4], 0.0);
+    damp(&mut spec);
+    let run = run(&spec, &RunRequest { settle_steps: 1500, ..steady(20, 500) });
+    let load = Load { travelled: 0.0, output_torque: TORQUE, carrier_speed: SPEED };
+    let rest = Transmission::new(&spec).unwrap().equilibrium(&load).unwrap();
+    for (mesh, rest) in run.meshes.iter().zip(&rest.mesh_forces) {
+        let (low, high) = mesh.force.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), x| (a.min(*x), b.max(*x)));
+        assert!((high - low) / rest < 1e-6, "{}: {low} {high}", mesh.name);
+        // dampers in standing axes see a turning displacement: (damping / stiffness) * speed = 2e-3
+        assert!((low / rest - 1.0).abs() < 2e-3, "{}: {low} {rest}", mesh.name);
+    }
+}
+
+#[test]
+fn invariant_sensor_hears_only_multiples_of_planet_pass() {
+    // 100 teeth: the meshes of the three planets are a third of a cycle apart, so that they push the ring sideways
+    let (steps, teeth) = (12, 100);
+    let turn = teeth * steps;
+    let mut spec = in_housing(&equal(3, 0.3), 0.15);
+    spec.stage.ring_teeth = teeth as u32;
+    for planet in &mut spec.stage.planets {
+        let phase = teeth as f64 * planet.angle / TAU;
+        (planet.sun_mesh, planet.ring_mesh) = (mesh(5e8, 0.15, phase), mesh(6e8, 0.15, phase));
+    }
+    damp(&mut spec);
+    // a housing that is not round, so that a fixed sensor hears the planets pass
+    let housing = spec.housing.as_mut().unwrap();
+    housing.frequencies[0] *= 0.7;
+    let run = run(&spec, &RunRequest { settle_steps: 2 * turn, ..steady(steps, turn) });
+    for sensor in &run.sensors {
+        let amplitude = |order: usize| {
+            let (mut a, mut b) = (0.0, 0.0);
+            for (k, x) in sensor.acceleration.iter().enumerate() {
+                let (sin, cos) = (TAU * ((order * k) % turn) as f64 / turn as f64).sin_cos();
+                (a, b) = (a + x * cos, b + x * sin);
+            }
+            f64::hypot(a, b) * 2.0 / turn as f64
+        };
+        let largest = (1..300).map(amplitude).fold(0.0, f64::max);
+        let stray = (1..300).filter(|order| order % 3 != 0).map(amplitude).fold(0.0, f64::max);
+        assert!(stray < 1e-6 * largest, "{}: {stray} of {largest}", sensor.name);
+    }
+    let change = run.periodic_change(turn / 3).unwrap();
+    assert!(change < 1e-4, "{change}");
+}
+
+#[test]
+fn invariant_goes_on_to_the_bit_on_any_threads() {
+    let mut spec = in_housing(&equal(3, 0.3), 0.15);
+    for planet in &mut spec.stage.planets {
+        planet.sun_mesh = with_coast(planet.sun_mesh.clone(), 5e-5);
+    }
+    let transmission = Transmission::new(&spec).unwrap();
+    let request = steady(50, 60);
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| transmission.run(&request, &()).unwrap())
+    };
+    let whole = on(1);
+    for threads in [2, 7] {
+        let other = on(threads);
+        assert_eq!((&whole.state, &whole.meshes, &whole.sensors), (&other.state, &other.meshes, &other.sensors));
+    }
+    let mut runner = transmission.start(&request).unwrap();
+    runner.settle(23, &()).unwrap();
+    let request = RunRequest { start: Start::Given(Box::new(runner.state().clone())), ..request.clone() };
+    let rest = transmission.run(&RunRequest { record_steps: 37, ..request }, &()).unwrap();
+    assert_eq!(rest.state, whole.state);
+    assert_eq!(rest.meshes[0].force, whole.meshes[0].force[23..]);
+    assert_eq!(rest.first_step, 24);
+}
+
+#[test]
+fn extreme_speeds_loads_and_stiffnesses() {
+    for sun_rpm in [1.0, 1e3, 6e4] {
+        for torque in [0.0, 1e-6, 1e7] {
+            for stiffness in [1e3, 1e9, 1e15] {
+                let mut spec = in_housing(&[0.1, 1.9, 4.4], 0.2);
+                for planet in &mut spec.stage.planets {
+                    planet.bearing_stiffness = [stiffness; 5];
+                    planet.sun_mesh = with_coast(planet.sun_mesh.clone(), 5e-5);
+                    planet.ring_mesh = with_coast(planet.ring_mesh.clone(), 5e-5);
+                }
+                let speed = sun_rpm * TAU / 60.0 * 27.0 / 126.0;
+                let turning = Turning::Steady { carrier_speed: speed, steps_per_cycle: 50 };
+                let integrator = Integrator::GeneralizedAlpha { spectral_radius: 0.8 };
+                let request = RunRequest { turning, output_torque: torque, integrator, ..steady(50, 30) };
+                let run = run(&spec, &request);
+                let size = run.state.position.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+                let stats = run.stats;
+                assert!(
+                    stats.worst_residual <= 1e-11 * size,
+                    "{sun_rpm} rpm, {torque} N m, {stiffness:e} N/m: {size} {stats:?}"
+                );
+                assert!(stats.newton_iterations <= 30 * stats.steps, "{stats:?}");
+            }
+        }
+    }
+}
