@@ -6,7 +6,7 @@
 //! worst (tip corners in contact) with 8 cells a Hertz half width, 2.0e-4 and 1.0e-3 with 16, 1.1e-4 and 5e-4 with 32.
 //! Where a pair joins, stiffness jumps: there loads are added where the tangents from both sides meet, until a load falls on the curve that was
 //! expected of it. A tooth with damage changes positions in which it, or a neighbour whose root it weakens, carries load; which these are is looked for at the
-//! highest load, where most pairs touch.
+//! highest load, where most pairs touch. Where only neighbours carry load, the change is some 1e-4 of the deflection, and sound curves are stretched by it.
 //!
 //! Where loads along the face are not even, the same holds for the whole face; all motion across the line of action is left out (see [`super`]).
 
@@ -111,6 +111,7 @@ impl MeshTable {
         }
         let model = sound_model(model)?;
         let mut windows = data.windows.clone();
+        let sound = Self::new(MeshTableData { windows: Vec::new(), ..data.clone() })?;
         for tooth in teeth {
             let damage = tooth.damage.iter().map(|damage| ToothDamage { tooth: 0, damage: damage.clone() }).collect();
             let damage = match tooth.member {
@@ -119,12 +120,20 @@ impl MeshTable {
             };
             let damaged = model.with_damage(&damage)?;
             let period = model.pairing().pair().gear(tooth.member).teeth();
-            let range = felt(model, &damaged, options)?;
-            if range.is_empty() {
+            let felt = Felt::new(model, &damaged, options)?;
+            if felt.positions.is_empty() {
                 continue;
             }
-            let first = range.start;
-            let curves = force_curves(&damaged, range, options, observer)?;
+            let mut own = force_curves(&damaged, felt.in_mesh.clone(), options, observer)?.into_iter();
+            let curve = |position: i64| {
+                if let Some(curve) = felt.in_mesh.contains(&position).then(|| own.next()).flatten() {
+                    return Ok(curve);
+                }
+                let (curve, shift) = sound.curve(position);
+                curve.stretched(felt.stretch_at(position), shift as i32)
+            };
+            let curves = felt.positions.clone().map(curve).collect::<Result<Vec<_>, _>>()?;
+            let first = felt.positions.start;
             windows.push(DamageWindow { pair: tooth.pair, period, first, curves });
         }
         Self::new(MeshTableData { windows, ..data.clone() })
@@ -244,26 +253,53 @@ fn meeting_force(low: &ForceKnot, high: &ForceKnot) -> f64 {
     low.force + rise * line
 }
 
-/// Positions at which damage of the teeth of pair 0 is felt.
-fn felt(sound: &PairModel, damaged: &PairModel, options: &TableOptions) -> Result<std::ops::Range<i64>, MeshError> {
-    let steps = options.positions_per_cycle as i64;
-    let stride = ((PROBE_STEP * steps as f64).floor() as i64).max(1);
-    let reach = damaged.pairing().most_pairs() as i64 * steps / stride;
-    let probes: Vec<i64> = (-reach..=reach).map(|k| k * stride).collect();
-    let mesh_cycles = probes.iter().map(|&position| options.mesh_cycle(position)).collect();
-    let request = request(mesh_cycles, vec![options.highest_force * damaged.pairing().base_radius(1)]);
-    let [before, after] = [sound.solve(&request, &())?, damaged.solve(&request, &())?];
-    let is_felt = |(before, after): (&PositionResult, &PositionResult)| {
-        let deflection = before.static_transmission_error - before.no_load_transmission_error;
-        let change = after.static_transmission_error - before.static_transmission_error;
-        // also where there is no number, for a load too high for the damaged tooth
-        before.status != after.status || !(change.abs() < FELT * options.tolerance * deflection)
-    };
-    let results = before.results.iter().flatten().zip(after.results.iter().flatten());
-    let felt = probes.iter().zip(results).filter(|(_, pair)| is_felt(*pair)).map(|(&position, _)| position);
-    let felt: Vec<i64> = felt.collect();
-    Ok(match (felt.first(), felt.last()) {
-        (Some(first), Some(last)) => first - stride + 1..last + stride,
-        _ => 0..0,
-    })
+/// Where damage of the teeth of pair 0 is felt.
+struct Felt {
+    positions: std::ops::Range<i64>,
+    /// Of these, where pair 0 carries load.
+    in_mesh: std::ops::Range<i64>,
+    /// Relative change of the deflection at positions a stride apart.
+    stretch: Vec<(i64, f64)>,
+}
+
+impl Felt {
+    fn new(sound: &PairModel, damaged: &PairModel, options: &TableOptions) -> Result<Self, MeshError> {
+        let steps = options.positions_per_cycle as i64;
+        let stride = ((PROBE_STEP * steps as f64).floor() as i64).max(1);
+        let reach = damaged.pairing().most_pairs() as i64 * steps / stride;
+        let probes: Vec<i64> = (-reach..=reach).map(|k| k * stride).collect();
+        let mesh_cycles = probes.iter().map(|&position| options.mesh_cycle(position)).collect();
+        let request = request(mesh_cycles, vec![options.highest_force * damaged.pairing().base_radius(1)]);
+        let [before, after] = [sound.solve(&request, &())?, damaged.solve(&request, &())?];
+        let (mut stretch, mut felt, mut in_mesh) = (Vec::new(), Vec::new(), Vec::new());
+        let results = before.results.iter().flatten().zip(after.results.iter().flatten());
+        for (&position, (before, after)) in probes.iter().zip(results) {
+            let deflection = before.static_transmission_error - before.no_load_transmission_error;
+            let change = (after.static_transmission_error - before.static_transmission_error) / deflection;
+            stretch.push((position, if change.is_finite() { change } else { 0.0 }));
+            // also where there is no number, for a load too high for the damaged tooth
+            let differs = before.status != after.status;
+            if differs || !(change.abs() < FELT * options.tolerance) {
+                felt.push(position);
+                if differs || [before, after].iter().any(|result| result.loaded_pairs().any(|pair| pair.pair == 0)) {
+                    in_mesh.push(position);
+                }
+            }
+        }
+        let around = |positions: &[i64]| match (positions.first(), positions.last()) {
+            (Some(first), Some(last)) => first - stride + 1..last + stride,
+            _ => 0..0,
+        };
+        Ok(Self { positions: around(&felt), in_mesh: around(&in_mesh), stretch })
+    }
+
+    /// Relative change of the deflection at a position, linear between those looked at.
+    fn stretch_at(&self, position: i64) -> f64 {
+        let after = self.stretch.partition_point(|(place, _)| *place <= position);
+        match (after.checked_sub(1).and_then(|before| self.stretch.get(before)), self.stretch.get(after)) {
+            (Some(&(low, a)), Some(&(high, b))) => a + (b - a) * (position - low) as f64 / (high - low) as f64,
+            (Some(&(_, value)), None) | (None, Some(&(_, value))) => value,
+            (None, None) => 0.0,
+        }
+    }
 }

@@ -126,6 +126,21 @@ impl ForceCurve {
         MeshResponse { force, stiffness }
     }
 
+    /// The curve with deflections larger by a fraction, above -1, and pairs counted on.
+    ///
+    /// # Errors
+    /// [`MeshError::Knot`] for a fraction that is not above -1.
+    pub fn stretched(&self, fraction: f64, shift: i32) -> Result<Self, MeshError> {
+        let touch = self.data.touch;
+        let knots = self.data.knots.iter().map(|knot| ForceKnot {
+            approach: touch + (knot.approach - touch) * (1.0 + fraction),
+            force: knot.force,
+            stiffness: knot.stiffness / (1.0 + fraction),
+            pairs: knot.pairs.iter().map(|&(pair, force)| (pair.saturating_add(shift), force)).collect(),
+        });
+        Self::new(ForceCurveData { touch, knots: knots.collect() })
+    }
+
     /// Normal forces of the tooth pairs at an approach (N): parts of [`Self::response`]'s force, between those of the knots beside. Their sum is that
     /// force but for lever arms: tips in corner contact press not quite along the line of action (some 1e-4).
     #[must_use]
@@ -179,6 +194,10 @@ mod tests {
         let beyond = curve.response(20e-6);
         assert!((beyond.force / (force + stiffness * 9e-6) - 1.0).abs() < 1e-13);
         assert_eq!((curve.response(3e-6), curve.response(-1.0)), Default::default());
+        let softer = curve.stretched(0.25, 3).unwrap();
+        let (answer, other) = (curve.response(5e-6), softer.response(3e-6 + 1.25 * 2e-6));
+        assert!((other.force / answer.force - 1.0).abs() < 1e-12 && softer.pair_forces(5e-6)[0].0 == 3);
+        assert!((other.stiffness * 1.25 / answer.stiffness - 1.0).abs() < 1e-12 && curve.stretched(-1.0, 0).is_err());
         let pairs = curve.pair_forces(5.5e-6);
         let sum: f64 = pairs.iter().map(|(_, force)| force).sum();
         assert!((sum / curve.response(5.5e-6).force - 1.0).abs() < 1e-12 && pairs.len() == 2);
