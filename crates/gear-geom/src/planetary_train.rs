@@ -5,7 +5,7 @@
 //! mirrored frame (`y -> -y`), where its pinion turns counter-clockwise.
 //!
 //! *Travelled* `t` is the rotation of ring and sun against the carrier in base pitches, `t = Z_r (theta_c - theta_r) / 2 pi`, the same in all meshes. The
-//! mesh cycle of a mesh is `m = t + o` with an offset for each mesh (J. Lin, R. G. Parker, "Mesh phasing relationships in planetary and epicyclic
+//! mesh cycle of a mesh is `m = t + o` with an offset for each mesh (R. G. Parker, J. Lin, "Mesh phasing relationships in planetary and epicyclic
 //! gears", *J. Mech. Des.* 126 (2004) 365-370; here from the flanks that drive, with tooth thickness, and not reduced to one cycle so that offsets number
 //! teeth as well). With the angles of the centre lines of sun tooth 0 and ring tooth 0 at rest, `beta_s` and `beta_r`, half tooth angles `h` at the working
 //! pitch circle of the mesh (subscripts `ps`, `pr` for the planet with the sun and with the ring), and [`GearPair::tooth_angle`] at `m = k`:
