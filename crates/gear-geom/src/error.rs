@@ -2,6 +2,8 @@
 
 use thiserror::Error;
 
+use crate::planetary_train::CentralMember;
+
 /// One thing that cannot be.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -165,4 +167,87 @@ impl From<GeometryError> for GeometryErrors {
     fn from(error: GeometryError) -> Self {
         Self(vec![error])
     }
+}
+
+/// What keeps gears from being a planetary train.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum TrainError {
+    /// No planet.
+    #[error("a planetary train needs at least one planet")]
+    NoPlanet,
+    /// A number that is none.
+    #[error("{quantity} = {value} is not allowed: a finite number is")]
+    NotFinite {
+        /// Which.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// An internal gear where an external one belongs, or the reverse.
+    #[error("the {gear} must be an {needed} gear")]
+    Kind {
+        /// Which gear.
+        gear: &'static str,
+        /// `external` or `internal`.
+        needed: &'static str,
+    },
+    /// A pair that cannot mesh.
+    #[error("{pair}: {source}")]
+    Pair {
+        /// Which pair.
+        pair: &'static str,
+        /// Why.
+        source: GeometryErrors,
+    },
+    /// A planet whose teeth do not fit both sun and ring.
+    #[error(
+        "planet {planet} at {angle:.6} rad does not fit between the teeth of sun ({sun_teeth}) and ring ({ring_teeth}): from planet 0 it must \
+         stand at a multiple of {step:.6} rad; the nearest angle is {nearest:.6} rad"
+    )]
+    Assembly {
+        /// Planet.
+        planet: usize,
+        /// Its angle (rad).
+        angle: f64,
+        /// Teeth of the sun.
+        sun_teeth: u32,
+        /// Teeth of the ring.
+        ring_teeth: u32,
+        /// `2 pi / (Z_s + Z_r)` (rad).
+        step: f64,
+        /// Nearest angle that fits (rad).
+        nearest: f64,
+    },
+    /// Planets that run into each other.
+    #[error("planets {first} and {second} collide: their tip circles overlap by {overlap:.6} m")]
+    Collision {
+        /// One planet.
+        first: usize,
+        /// The other.
+        second: usize,
+        /// Overlap (m).
+        overlap: f64,
+    },
+    /// The same part named twice, so that the train's speeds are not determined.
+    #[error("the speed of the {0:?} is given twice: speeds of two different parts determine a train")]
+    SpeedsUndetermined(CentralMember),
+    /// More engagements than a list can hold.
+    #[error("about {count:.3e} engagements are asked for: at most {most:.0e}; take fewer turns of the carrier")]
+    TooManyEngagements {
+        /// About how many.
+        count: f64,
+        /// How many are allowed.
+        most: f64,
+    },
+    /// No such planet or tooth.
+    #[error("there is no {what} {number}: there are {count}")]
+    NoSuch {
+        /// `planet` or `tooth`.
+        what: &'static str,
+        /// Asked for.
+        number: usize,
+        /// How many there are.
+        count: usize,
+    },
 }

@@ -57,12 +57,12 @@ pub use damage::{
     BrokenCorner, CrackFront, CrackLength, CrackPath, CrackStart, Damage, Pit, PitShape, ProfileMeasure, RootCrack,
     ToothDamage,
 };
-pub use error::{GeometryError, GeometryErrors};
+pub use error::{GeometryError, GeometryErrors, TrainError};
 pub use fillet::{Fillet, FilletSpec};
 pub use gear::{FlankSide, Gear, GearKind, GearSpec, ToothThickness};
 pub use modification::{EndRelief, FlankModification, MeasuredDeviation, ProfileRelief, ReliefShape};
 pub use outline::{HalfToothOutline, OutlineSegment};
 pub use pair::{Finding, GearPair, Landmark, Landmarks, Member};
 pub use planetary_train::{
-    CentralMember, Engagement, MeshSite, PlanetaryTrain, PlanetaryTrainSpec, TrainError, TrainSpeeds, TrainTooth,
+    CentralMember, Engagement, MeshSite, PlanetaryTrain, PlanetaryTrainSpec, TrainSpeeds, TrainTooth,
 };

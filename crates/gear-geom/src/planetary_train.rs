@@ -21,9 +21,7 @@
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-use thiserror::Error;
-
-use crate::error::GeometryErrors;
+use crate::error::TrainError;
 use crate::gear::{FlankSide, Gear, GearKind};
 use crate::pair::{GearPair, Member};
 
@@ -91,81 +89,6 @@ pub struct PlanetaryTrainSpec {
     pub sun_tooth_angle: f64,
 }
 
-/// What keeps gears from being a planetary train.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum TrainError {
-    /// No planet.
-    #[error("a planetary train needs at least one planet")]
-    NoPlanet,
-    /// A number that is none.
-    #[error("{quantity} = {value} is not allowed: a finite number is")]
-    NotFinite {
-        /// Which.
-        quantity: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// An internal gear where an external one belongs, or the reverse.
-    #[error("the {gear} must be an {needed} gear")]
-    Kind {
-        /// Which gear.
-        gear: &'static str,
-        /// `external` or `internal`.
-        needed: &'static str,
-    },
-    /// A pair that cannot mesh.
-    #[error("{pair}: {source}")]
-    Pair {
-        /// Which pair.
-        pair: &'static str,
-        /// Why.
-        source: GeometryErrors,
-    },
-    /// A planet whose teeth do not fit both sun and ring.
-    #[error(
-        "planet {planet} at {angle:.6} rad does not fit between the teeth of sun ({sun_teeth}) and ring ({ring_teeth}): from planet 0 it must \
-         stand at a multiple of {step:.6} rad; the nearest angle is {nearest:.6} rad"
-    )]
-    Assembly {
-        /// Planet.
-        planet: usize,
-        /// Its angle (rad).
-        angle: f64,
-        /// Teeth of the sun.
-        sun_teeth: u32,
-        /// Teeth of the ring.
-        ring_teeth: u32,
-        /// `2 pi / (Z_s + Z_r)` (rad).
-        step: f64,
-        /// Nearest angle that fits (rad).
-        nearest: f64,
-    },
-    /// Planets that run into each other.
-    #[error("planets {first} and {second} collide: their tip circles overlap by {overlap:.6} m")]
-    Collision {
-        /// One planet.
-        first: usize,
-        /// The other.
-        second: usize,
-        /// Overlap (m).
-        overlap: f64,
-    },
-    /// The same part named twice, so that the train's speeds are not determined.
-    #[error("the speed of the {0:?} is given twice: speeds of two different parts determine a train")]
-    SpeedsUndetermined(CentralMember),
-    /// No such planet or tooth.
-    #[error("there is no {what} {number}: there are {count}")]
-    NoSuch {
-        /// `planet` or `tooth`.
-        what: &'static str,
-        /// Asked for.
-        number: usize,
-        /// How many there are.
-        count: usize,
-    },
-}
-
 /// Speeds of the parts (rad/s), counter-clockwise positive, against the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrainSpeeds {
@@ -216,6 +139,8 @@ struct Planet {
 
 /// Departure from the assembly condition that is taken for rounding of the angles (tooth pitches).
 const ASSEMBLY_TOLERANCE: f64 = 1e-6;
+/// Most engagements in a list.
+const MOST_ENGAGEMENTS: f64 = 1e8;
 
 impl PlanetaryTrain {
     /// Puts a train together.
@@ -385,12 +310,18 @@ impl PlanetaryTrain {
     /// When a tooth touches at a pitch point, in a range of turns of the carrier against the ring from rest; in the order of time.
     ///
     /// # Errors
-    /// [`TrainError::NoSuch`] planet or tooth, [`TrainError::NotFinite`] range.
+    /// [`TrainError::NoSuch`] planet or tooth, [`TrainError::NotFinite`] range, [`TrainError::TooManyEngagements`].
     pub fn engagements(&self, tooth: TrainTooth, turns: Range<f64>) -> Result<Vec<Engagement>, TrainError> {
         if let Some(&value) = [turns.start, turns.end].iter().find(|turn| !turn.is_finite()) {
             return Err(TrainError::NotFinite { quantity: "carrier turns", value });
         }
         let per_turn = self.cycles_per_carrier_turn();
+        // as if a tooth met each planet every cycle, from rest on
+        let farthest = turns.start.abs().max(turns.end.abs());
+        let count = 2.0 * self.planets() as f64 * per_turn * farthest;
+        if count > MOST_ENGAGEMENTS {
+            return Err(TrainError::TooManyEngagements { count, most: MOST_ENGAGEMENTS });
+        }
         let mut engagements = Vec::new();
         for site in MeshSite::ALL {
             for planet in 0..self.planets() {

@@ -162,5 +162,7 @@ fn extreme_trains_are_refused() {
     let twice = train.speeds([(CentralMember::Sun, 1.0), (CentralMember::Sun, 1.0)]);
     assert_eq!(twice.unwrap_err(), TrainError::SpeedsUndetermined(CentralMember::Sun));
     assert!(matches!(train.mesh_offset(MeshSite::SunPlanet, 3), Err(TrainError::NoSuch { number: 3, count: 3, .. })));
+    assert!(matches!(train.engagements(TrainTooth::Ring(0), 0.0..1e9), Err(TrainError::TooManyEngagements { .. })));
+    assert!(matches!(train.engagements(TrainTooth::Ring(0), 0.0..f64::NAN), Err(TrainError::NotFinite { .. })));
     assert!(matches!(train.engagements(TrainTooth::Ring(99), 0.0..1.0), Err(TrainError::NoSuch { count: 99, .. })));
 }

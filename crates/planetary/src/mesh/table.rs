@@ -58,6 +58,8 @@ impl From<MeshTable> for MeshTableData {
 
 /// Part of a step within which a mesh cycle counts as at a position: what rounding of angles leaves.
 const AT_POSITION: f64 = 1e-6;
+/// Pairs and positions beyond this are no use: a mesh cycle's place in its cycle is then lost to rounding.
+const MOST_POSITIONS: u64 = 1_000_000_000_000;
 
 impl MeshTable {
     /// Checks a table.
@@ -73,6 +75,15 @@ impl MeshTable {
             return Err(MeshError::Option { name: "origin", value: data.origin, allowed: "-1e6 to 1e6 mesh cycles" });
         }
         for (index, window) in data.windows.iter().enumerate() {
+            if let Some(&value) = [window.pair, window.first].iter().find(|value| value.unsigned_abs() > MOST_POSITIONS)
+            {
+                let allowed = "-1e12 to 1e12";
+                return Err(MeshError::Option {
+                    name: "pair or position of a damaged tooth",
+                    value: value as f64,
+                    allowed,
+                });
+            }
             if window.period == 0 {
                 return Err(MeshError::Option { name: "period of a damaged tooth", value: 0.0, allowed: "1 or more" });
             }
@@ -107,7 +118,7 @@ impl MeshTable {
     pub fn curve(&self, position: i64) -> (&ForceCurve, i64) {
         let steps = self.data.sound.len() as i64;
         for window in &self.data.windows {
-            let since = position - (window.first + window.pair * steps);
+            let since = position.saturating_sub(window.first + window.pair * steps);
             let (meeting, index) =
                 (since.div_euclid(window.positions(steps)), since.rem_euclid(window.positions(steps)));
             if let Some(curve) = window.curves.get(index as usize) {
@@ -132,7 +143,8 @@ impl MeshTable {
 
     /// Positions beside a mesh cycle, with their weights.
     fn beside(&self, mesh_cycle: f64) -> [(i64, f64); 2] {
-        let place = (mesh_cycle - self.data.origin) * self.data.sound.len() as f64;
+        let most = MOST_POSITIONS as f64;
+        let place = ((mesh_cycle - self.data.origin) * self.data.sound.len() as f64).clamp(-most, most);
         let nearest = place.round();
         if (place - nearest).abs() < AT_POSITION {
             return [(nearest as i64, 1.0), (nearest as i64, 0.0)];
@@ -221,6 +233,12 @@ mod tests {
         assert!(matches!(table(vec![window(0, 6, 0, 4), window(3, 9, 0, 4)]), Err(MeshError::Overlap { .. })));
         assert!(matches!(table(vec![window(0, 7, 0, 4), window(2, 9, 0, 4)]), Err(MeshError::Overlap { .. })));
         assert!(matches!(table(vec![window(0, 1, 0, 5)]), Err(MeshError::Overlap { .. })));
+        assert!(matches!(table(vec![window(i64::MIN, 7, 0, 5)]), Err(MeshError::Option { .. })));
+        let sound = table(vec![window(5, 7, -2, 3)]).unwrap();
+        for (cycle, approach) in [(f64::MAX, 1e-6), (f64::NAN, 1e-6), (-f64::INFINITY, 1e-6), (0.3, f64::NAN)] {
+            let answer = sound.response(cycle, approach);
+            assert!(answer.force.is_finite() && answer.stiffness.is_finite(), "{cycle} {approach}: {answer:?}");
+        }
         let empty = MeshTableData { origin: 0.0, sound: vec![], windows: vec![] };
         assert!(matches!(MeshTable::new(empty), Err(MeshError::Option { .. })));
     }
