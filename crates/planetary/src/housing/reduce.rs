@@ -3,7 +3,7 @@
 //! The lowest modes `Phi` of the held structure are completed by residual attachment vectors: static responses `X = K^-1 F` to unit loads at all
 //! ports and harmonics of the seat, less what the modes take part in, `R = X - Phi Omega^-2 Phi^T F` (MacNeal 1971; Rubin 1975;
 //! Dickens, Nakagawa and Wittbrodt 1997). `R` is orthogonal to the modes in both `K` and `M`. Its own stiffness `R^T K R = R^T F` is
-//! the residual compliance; directions with less than [`NEGLIGIBLE`] of the compliance of a load are rounding and left out. Made orthonormal in
+//! the residual compliance; directions with less than `NEGLIGIBLE` of the compliance of a load are rounding and left out. Made orthonormal in
 //! `K` and diagonalised in `M` they are further coordinates, of high frequency: all inertia that loads can feel at rest or slowly, none
 //! of the eigenforms. With modes left out above a frequency limit, motion is exact in statics and good to about half that limit.
 
