@@ -125,7 +125,7 @@ pub struct PlanetaryStage {
     pub planets: Vec<Planet>,
 }
 
-/// A bevel stage before the sun.
+/// A bevel stage before the sun. Its coast flanks push along the same line, backwards.
 #[derive(Debug, Clone)]
 pub struct BevelStage {
     /// Pinion with its shaft.

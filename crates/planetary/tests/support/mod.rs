@@ -7,7 +7,7 @@ use std::sync::Arc;
 use faer::Mat;
 use planetary::elastic::{ElasticBody, Port, RingSeat, Sensor};
 use planetary::engine::{
-    Anchor, Bearing, BodyId, CoastFlank, Mesh, Planet, PlanetaryStage, RigidBody, TransmissionSpec,
+    Anchor, Bearing, BevelStage, BodyId, CoastFlank, Mesh, Planet, PlanetaryStage, RigidBody, TransmissionSpec,
 };
 use planetary::mesh::{MeshLaw, MeshResponse};
 
@@ -151,4 +151,87 @@ pub fn rigid_ring(radius: f64, translation: [f64; 2], rotation: [f64; 2], dampin
 
 pub fn degrees(angle: f64) -> f64 {
     angle * PI / 180.0
+}
+
+/// An elastic body of no particular form, of so many coordinates from 200 Hz on: ports on the axis and aside, a seat of eight harmonics, two sensors. Its
+/// shapes are smooth in the number of the coordinate, and no two ports alike.
+pub fn any_housing(modes: usize) -> ElasticBody {
+    let unit = 1.0 / 40.0_f64.sqrt();
+    let wave = |row: usize, mode: usize, seed: f64| (seed + 1.3 * row as f64 + 2.1 * (mode as f64 + 1.0).sqrt()).sin();
+    let shapes = |rows: usize, seed: f64, rotations: bool| {
+        Mat::from_fn(rows, modes, |row, mode| {
+            let size = if rotations && row >= 3 { 5.0 } else { 1.0 };
+            unit * size * wave(row, mode, seed)
+        })
+    };
+    let port = |name: &str, position, seed| Port { name: name.into(), position, shapes: shapes(6, seed, true) };
+    let sensor = |name: &str, angle: f64| Sensor {
+        name: name.into(),
+        position: [0.16 * angle.cos(), 0.16 * angle.sin(), 0.0],
+        direction: [angle.cos(), angle.sin(), 0.0],
+        shape: (0..modes).map(|mode| unit * wave(0, mode, angle)).collect(),
+    };
+    ElasticBody {
+        frequencies: (0..modes).map(|mode| TAU * (200.0 + 45.0 * mode as f64)).collect(),
+        damping_ratios: vec![0.02; modes],
+        ports: vec![
+            port("top", [0.0, 0.0, 0.1], 0.3),
+            port("bottom", [0.0, 0.0, -0.1], 1.1),
+            port("inboard", [0.15, 0.0, -0.12], 2.0),
+            port("outboard", [0.25, 0.0, -0.12], 2.9),
+        ],
+        ring_seat: Some(RingSeat { radius: 0.15, z: 0.0, harmonics: 8, shapes: shapes(3 * 17, 0.7, false) }),
+        sensors: vec![sensor("near", 0.4), sensor("far", 2.6)],
+    }
+}
+
+/// Both stages in a housing of so many coordinates: bevel pinion driven, bevel gear on a shaft of its own, joined to the sun by a spline.
+pub fn whole(angles: &[f64], modes: usize) -> TransmissionSpec {
+    let mut spec = train(angles, 0.1);
+    spec.housing = Some(any_housing(modes));
+    let speed = (1.0 + 99.0 / 27.0) * 71.0 / 19.0;
+    // line of action of a crossed pair whose base radii are 43 and 160 mm
+    let (point, normal) = ([0.16, 0.0, -0.12], [0.2, 0.9, (1.0_f64 - 0.04 - 0.81).sqrt()]);
+    let pinion =
+        RigidBody { position: [0.2, 0.0, -0.12 - 0.04], axis: [-1.0, 0.0, 0.0], spin_ratio: speed, ..disk(3.0, 0.002) };
+    let gear = RigidBody { position: [0.0, 0.0, -0.11], spin_ratio: 1.0 + 99.0 / 27.0, ..disk(5.0, 0.03) };
+    spec.bevel = Some(BevelStage {
+        pinion,
+        gear: Some(gear),
+        mesh: Mesh { damping: 2000.0, ..mesh(4e8, 0.1, 0.25) },
+        point,
+        normal,
+        cycles_per_turn: speed * 19.0,
+    });
+    for planet in &mut spec.stage.planets {
+        planet.sun_mesh = Mesh { damping: 2000.0, ..with_coast(planet.sun_mesh.clone(), 1e-4) };
+        planet.ring_mesh = Mesh { damping: 2000.0, ..with_coast(planet.ring_mesh.clone(), 1e-4) };
+    }
+    let bearing = |name: &str, body, anchor, position, stiffness: [f64; 6]| Bearing {
+        name: name.into(),
+        body,
+        anchor,
+        position,
+        axes: STANDING_AXES,
+        stiffness,
+        damping: stiffness.map(|k| 1e-5 * k),
+    };
+    let port = |name: &str| Anchor::Port(name.into());
+    let (shaft, rod) = ([3e8, 3e8, 3e8, 2e5, 2e5, 0.0], [3e8, 3e8, 3e8, 0.0, 2e5, 2e5]);
+    spec.bearings = vec![
+        bearing(
+            "sun spline",
+            BodyId::Sun,
+            Anchor::Body(BodyId::BevelGear),
+            [0.0, 0.0, -0.05],
+            [2e8, 2e8, 1e7, 1e4, 1e4, 5e5],
+        ),
+        bearing("gear shaft, upper", BodyId::BevelGear, port("bottom"), [0.0, 0.0, -0.09], shaft),
+        bearing("gear shaft, lower", BodyId::BevelGear, port("bottom"), [0.0, 0.0, -0.15], shaft),
+        bearing("carrier", BodyId::Carrier, port("top"), [0.0, 0.0, 0.1], [5e8, 5e8, 3e8, 1e6, 1e6, 0.0]),
+        bearing("pinion, inboard", BodyId::BevelPinion, port("inboard"), [0.15, 0.0, -0.16], rod),
+        bearing("pinion, outboard", BodyId::BevelPinion, port("outboard"), [0.25, 0.0, -0.16], rod),
+    ];
+    spec.drive = Some(BodyId::BevelPinion);
+    spec
 }
