@@ -314,3 +314,56 @@ fn extreme_speeds_loads_and_stiffnesses() {
         }
     }
 }
+
+#[test]
+fn order_of_a_whirling_rotor() {
+    // I_t z'' - i I_p w z' + k z = 0 for the tilt z = rx + i ry of the sun, which its meshes at mid-height do not feel
+    let (stiffness, tilting) = (1e5, 0.2);
+    let mut spec = undamped(train(&equal(3, 0.3), 0.0));
+    spec.sun.spin_ratio = 200.0;
+    spec.bearings[0].position = [0.0; 3];
+    spec.bearings[0].stiffness[3..5].fill(stiffness);
+    let transmission = Transmission::new(&spec).unwrap();
+    let load = Load { travelled: 0.0, output_torque: TORQUE, carrier_speed: SPEED };
+    let mut state = transmission.equilibrium(&load).unwrap().state;
+    state.velocity[3] = tilting;
+    let gyroscopic = spec.sun.polar * spec.sun.spin_ratio * SPEED;
+    // the acceleration that the equation of motion gives, without which the order is one
+    state.acceleration[4] = gyroscopic / spec.sun.transverse * tilting;
+    let root = (gyroscopic.powi(2) + 4.0 * spec.sun.transverse * stiffness).sqrt();
+    let [forward, backward] = [1.0, -1.0].map(|sign| (gyroscopic + sign * root) / (2.0 * spec.sun.transverse));
+    assert!(forward > 1.5 * -backward, "the spin matters");
+    let cycles = 2;
+    let time = TAU / SPEED / 99.0 * cycles as f64;
+    // tilting (e^(i a t) - e^(i b t)) / (i (a - b))
+    let size = tilting / (forward - backward);
+    let exact = [
+        size * ((forward * time).sin() - (backward * time).sin()),
+        -size * ((forward * time).cos() - (backward * time).cos()),
+    ];
+    let errors = [100, 200, 400, 800].map(|steps| {
+        let start = Start::Given(Box::new(state.clone()));
+        let end = transmission.run(&RunRequest { start, ..steady(steps, cycles * steps) }, &()).unwrap().state.position;
+        f64::hypot(end[3] - exact[0], end[4] - exact[1]) / size
+    });
+    let order = (errors[1] / errors[3]).log2() / 2.0;
+    assert!(order > 1.9 && errors[3] < 0.02, "{errors:?}");
+}
+
+#[test]
+fn invariant_a_cancelled_run_keeps_what_it_has() {
+    struct Few(std::sync::atomic::AtomicUsize);
+    impl fecm::Observer for Few {
+        fn advanced(&self, done: usize, _total: usize) {
+            self.0.store(done, std::sync::atomic::Ordering::Relaxed);
+        }
+        fn is_cancelled(&self) -> bool {
+            self.0.load(std::sync::atomic::Ordering::Relaxed) >= 7
+        }
+    }
+    let spec = in_housing(&equal(3, 0.3), 0.1);
+    let few = Few(std::sync::atomic::AtomicUsize::new(0));
+    let part = Transmission::new(&spec).unwrap().run(&steady(50, 20), &few).unwrap();
+    assert_eq!((part.len(), part.state.step), (7, 7));
+    assert_eq!(part.sensors[0].acceleration[..], run(&spec, &steady(50, 20)).sensors[0].acceleration[..7]);
+}

@@ -33,7 +33,7 @@ pub struct TransmissionState {
     pub position: Vec<f64>,
     /// Their rates.
     pub velocity: Vec<f64>,
-    /// And accelerations.
+    /// And accelerations; a run from accelerations that do not fit the forces loses an order of accuracy.
     pub acceleration: Vec<f64>,
     /// Forces of connections (N, N m): bearings, then meshes.
     pub connection: Vec<f64>,
