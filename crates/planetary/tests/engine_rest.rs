@@ -167,6 +167,9 @@ fn invariant_what_cannot_rest_is_an_error() {
     assert!(matches!(Transmission::new(&astray), Err(PlanetaryError::Missing { .. })));
     let mut heavy = train(&equal(3, 0.0), 0.0);
     heavy.carrier.mass = f64::NAN;
+    let mut aside = train(&equal(3, 0.0), 0.0);
+    aside.sun.position[0] = 1e-3;
+    assert!(matches!(Transmission::new(&aside), Err(PlanetaryError::Value { .. })));
     assert!(matches!(Transmission::new(&heavy), Err(PlanetaryError::Value { .. })));
     assert_eq!(mesh(5e8, 0.0, 0.0).law.response(0.0, -1e-9).force, 0.0);
 }

@@ -12,6 +12,8 @@ const NOT_NEGATIVE: &str = "0 or more";
 const FINITE: &str = "a finite number";
 /// How far directions may be from unit length and right angles.
 const DIRECTION_TOLERANCE: f64 = 1e-6;
+/// How far the centres of sun and carrier, about which their connections turn, may be from the main axis (m).
+const ON_AXIS: f64 = 1e-9;
 const DIRECTION: &str = "unit vectors at right angles, to 1e-6";
 
 fn positive(what: impl Fn() -> String, value: f64) -> Checked {
@@ -177,6 +179,19 @@ impl TransmissionSpec {
             if let Some(body) = self.body(id) {
                 body.check(id)?;
             }
+        }
+        for (id, body) in [(BodyId::Sun, &self.sun), (BodyId::Carrier, &self.carrier)] {
+            let ([x, y, _], [a, b, _]) = (body.position, body.axis);
+            let off = x.hypot(y);
+            PlanetaryError::check(
+                off <= ON_AXIS,
+                || format!("{id}: distance from the main axis"),
+                off,
+                "0 m, to 1e-9",
+            )?;
+            let tilt = a.hypot(b);
+            let allowed = "0, to 1e-6: along the main axis";
+            PlanetaryError::check(tilt <= DIRECTION_TOLERANCE, || format!("{id}: tilt of the axis"), tilt, allowed)?;
         }
         if let Some(housing) = &self.housing {
             check_housing(housing)?;
