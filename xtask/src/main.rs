@@ -3,6 +3,7 @@
 use clap::{Parser, Subcommand};
 
 mod calculix;
+mod calculix_housing;
 mod ci;
 mod damage_classifier;
 mod docs;
@@ -37,6 +38,8 @@ enum Command {
     },
     /// Static transmission error against CalculiX (program `ccx`, Debian package calculix-ccx); writes docs/reports/calculix.md.
     PeerCalculix,
+    /// Natural frequencies of the default housing against CalculiX; writes docs/reports/calculix-housing.md.
+    PeerHousing,
     /// Confusion table of the damage classifier (dissertation, section 3.3); writes docs/reports/damage-classifier.md.
     DamageClassifier,
     /// Figures and tables of the dissertation, computed again from the case files, beside the printed numbers, on one page.
@@ -58,6 +61,7 @@ fn main() -> anyhow::Result<()> {
         Command::Ci { full } => ci::run(full),
         Command::Docs { check, no_api } => docs::run(check, !no_api),
         Command::PeerCalculix => calculix::run(),
+        Command::PeerHousing => calculix_housing::run(),
         Command::DamageClassifier => damage_classifier::run(),
         Command::ReproduceThesisFigures(options) => reproduce::run(&options),
         Command::SceneCosts => scene_costs::run(),

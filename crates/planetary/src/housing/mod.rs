@@ -7,6 +7,7 @@
 //! | [`block`] | structured blocks of any kind of element |
 //! | [`casing`] | a parametric housing, meshed |
 //! | [`assembly`] | stiffness, factored, and mass |
+//! | [`inp`] | meshes as text of Abaqus and CalculiX |
 //! | [`held`] | whether mounts hold every part |
 //! | [`reading`] | frames, ring harmonics and sensors from the motion of nodes |
 //! | [`reduce`] | lowest modes and static responses |
@@ -18,6 +19,7 @@ pub mod casing;
 pub mod element;
 pub mod error;
 pub mod held;
+pub mod inp;
 pub mod mesh;
 pub mod model;
 pub mod reading;
