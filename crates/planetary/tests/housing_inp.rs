@@ -64,13 +64,23 @@ fn invariant_written_meshes_are_read_back() {
     };
     let blocks = Kind::ALL.map(|kind| block(kind, [2, 1, 2], MATERIAL, |x| x.map(|x| 0.1 * x + 0.01 / 3.0)));
     for mesh in blocks.iter().chain([&casing]) {
-        let text = write(mesh, &Units::SI);
-        let mut back = read(&text, &Units::SI).unwrap();
-        assert_eq!(back.node_sets.remove("all").unwrap().len(), mesh.nodes.len());
-        assert_eq!(back, *mesh);
-        let other = read(&write(mesh, &Units::MILLIMETRE), &Units::MILLIMETRE).unwrap();
-        for (a, b) in other.nodes.iter().zip(&mesh.nodes) {
-            assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-15));
+        for units in [Units::SI, Units::MILLIMETRE] {
+            let text = write(mesh, &units);
+            let mut back = read(&text, &units).unwrap();
+            assert_eq!(back.node_sets.remove("all").unwrap().len(), mesh.nodes.len());
+            assert_eq!((&back.elements, &back.node_sets), (&mesh.elements, &mesh.node_sets));
+            for (a, b) in back.nodes.iter().zip(&mesh.nodes) {
+                assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-13 * b.abs().max(1e-6)), "{a:?} {b:?}");
+            }
+            for ((name, a), (other, b)) in back.materials.iter().zip(&mesh.materials) {
+                assert_eq!(name, other);
+                assert!(
+                    (a.young_modulus / b.young_modulus - 1.0).abs() < 1e-13
+                        && (a.density / b.density - 1.0).abs() < 1e-13
+                );
+            }
+            let numbers = text.lines().filter(|line| !line.starts_with('*')).flat_map(|line| line.split(','));
+            assert!(numbers.map(|field| field.trim().len()).all(|width| width <= 20), "fields of CalculiX");
         }
     }
 }

@@ -9,14 +9,15 @@ use crate::housing::mesh::SolidMesh;
 /// Values a line.
 const PER_LINE: usize = 10;
 
-/// Text of an input file with the mesh, its sets and materials; numbers from 1 in the order of the mesh. Reading it again gives the same mesh.
+/// Text of an input file with the mesh, its sets and materials; numbers from 1 in the order of the mesh. Reading it again gives the same
+/// mesh but for rounding: CalculiX reads fields of 20 characters, which hold 14 digits.
 #[must_use]
 pub fn write(mesh: &SolidMesh, units: &Units) -> String {
     let mut text = String::new();
     line(&mut text, format_args!("*NODE, NSET=all"));
     for (k, node) in mesh.nodes.iter().enumerate() {
         let [x, y, z] = node.map(|x| x / units.length);
-        line(&mut text, format_args!("{}, {x:e}, {y:e}, {z:e}", k + 1));
+        line(&mut text, format_args!("{}, {x:.13e}, {y:.13e}, {z:.13e}", k + 1));
     }
     let mut groups: BTreeMap<(usize, &'static str), Vec<usize>> = BTreeMap::new();
     for (k, element) in mesh.elements.iter().enumerate() {
