@@ -230,10 +230,9 @@ impl Housing {
             }),
             sensors: sensors
                 .into_iter()
-                .map(|(name, position, direction, reading)| {
+                .map(|(sensor, reading)| {
                     let row = shapes(&reading);
-                    let shape = (0..row.ncols()).map(|k| row[(0, k)]).collect();
-                    Sensor { name, position, direction, shape }
+                    Sensor { shape: (0..row.ncols()).map(|k| row[(0, k)]).collect(), ..sensor }
                 })
                 .collect(),
             frequencies: reduced.frequencies.clone(),
@@ -259,12 +258,8 @@ impl Housing {
         all
     }
 
-    #[allow(clippy::type_complexity)]
-    fn sensor(
-        &self,
-        surface: &Surface,
-        place: &SensorPlace,
-    ) -> Result<(String, [f64; 3], [f64; 3], Reading), HousingError> {
+    /// A sensor, its shape still empty, and what reads it.
+    fn sensor(&self, surface: &Surface, place: &SensorPlace) -> Result<(Sensor, Reading), HousingError> {
         let (point, angle, height) = match place.at {
             SensorAt::Wall { angle, z } => (surface.outermost(&self.mesh, angle, z), angle, z),
             SensorAt::Nearest(at) => (surface.nearest_node(&self.mesh, at), at[1].atan2(at[0]), at[2]),
@@ -281,7 +276,8 @@ impl Housing {
         }
         let direction = direction / length;
         let reading = Reading::sensor(&point, direction);
-        Ok((place.name.clone(), point.position, direction.into(), reading))
+        let (name, position, direction) = (place.name.clone(), point.position, direction.into());
+        Ok((Sensor { name, position, direction, shape: Vec::new() }, reading))
     }
 }
 

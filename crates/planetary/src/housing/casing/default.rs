@@ -1,8 +1,9 @@
 //! The default housing.
 //!
-//! Its ring is that of the dissertation (Table 5.1: outer diameter 296.55 mm, face width 25.4 mm, 99 teeth; root radius 141.9 mm). Everything
-//! else of the housing is not printed there, and is chosen: an aluminium casing of the size that ring and bevel stage ask for, two supports at the
-//! ring's height on either side of the input, a restraint below, ribs on the upper cover.
+//! Its ring is that of the dissertation (Table 5.1: outer diameter 296.55 mm, face width 25.4 mm, 99 teeth; root radius 141.9 mm). How
+//! it is held follows the OH-58A: two pylon supports on the sides, and an isolation mount at the lower rear, on the side of the input (operator's
+//! manual TM 55-1520-228-10, paragraphs 2-36 and 2-37). Everything else of the housing is not printed, and is chosen: an aluminium casing of the
+//! size that ring and bevel stage ask for, the supports at the ring's height, ribs on the upper cover, stiffness of the mounts as on a test stand.
 
 use fecm::Material;
 
@@ -42,6 +43,8 @@ const TOOTH: f64 = std::f64::consts::TAU / 99.0;
 /// Angle of the ring's damaged tooth (rad), and tooth 0 of the sensors.
 const DAMAGED: f64 = 35.6 * DEGREE;
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
+/// Angle of the input (rad): near its sensor.
+const INPUT: f64 = 30.0 * DEGREE;
 /// Teeth of the ring in the middle of the two supports, counted from the damaged one.
 const SUPPORTS: [usize; 2] = [23, 73];
 /// Teeth on either side of it that the support covers too.
@@ -91,7 +94,7 @@ impl Default for Casing {
                 mount("support_2", SUPPORTS[1]),
                 MountPart {
                     name: "restraint".to_owned(),
-                    angle: 210.0 * DEGREE,
+                    angle: INPUT,
                     width: 40.0 * DEGREE,
                     segments: [2, 2],
                     stiffness: [5e7, 5e7, 5e6],
@@ -105,7 +108,7 @@ impl Default for Casing {
             ],
             input: Some(InputPart {
                 segment: 4,
-                angle: 30.0 * DEGREE,
+                angle: INPUT,
                 width: 36.0 * DEGREE,
                 thickness: 10.0 * mm,
                 elevation: 5.0 * DEGREE,
