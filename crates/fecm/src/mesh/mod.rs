@@ -2,8 +2,11 @@
 
 pub mod blocks;
 mod crack_path;
+mod crack_zone;
+mod outline_path;
 pub mod plane;
 pub mod sector;
+mod sector_blocks;
 
 pub use plane::PlaneMesh;
 pub use sector::{FlankEdge, MeshDensity, SectorMesh};
