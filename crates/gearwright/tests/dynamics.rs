@@ -281,6 +281,39 @@ fn films_speeds_bearings_and_blows() {
 }
 
 #[test]
+fn steps_left_out_follow_the_natural_period_at_every_speed() {
+    let scratch = Scratch::with_pair();
+    let content = healthy().replace("steps_per_mesh_cycle = 20\n", "mesh_cycles = 1\n");
+    let content = content.replace("speed_rpm = 3000.0", "mesh_frequency_hz = [500.0, 1000.0, 6000.0]");
+    let (folder, summary) = scratch.run("chosen", &content);
+    let natural = summary["model"]["natural_frequency_hz"].as_f64().unwrap();
+    // mass-proportional damping: zeta = alpha / 2 omega
+    let ratio = summary["model"]["damping_ratio"].as_f64().unwrap();
+    assert!((ratio * 4.0 * std::f64::consts::PI * natural / 3000.0 - 1.0).abs() < 1e-9);
+    let speeds = summary["speeds"].as_array().unwrap();
+    for (index, speed) in speeds.iter().enumerate() {
+        let steps = speed["steps_per_mesh_cycle"].as_u64().unwrap();
+        let mesh = speed["mesh_frequency_hz"].as_f64().unwrap();
+        assert!(
+            (speed["steps_per_natural_period"].as_f64().unwrap() / (steps as f64 * mesh / natural) - 1.0).abs() < 1e-9
+        );
+        assert!(steps >= 50 && speed["error_at_resonance"].as_f64().unwrap() <= 0.025 && speed["steps_chosen"] == true);
+        let rows = column(&folder.join(format!("speed_{}/response.csv", index + 1)), "dte_um");
+        assert_eq!(rows.len(), steps as usize);
+    }
+    assert!(speeds[0]["steps_per_mesh_cycle"].as_u64() > speeds[1]["steps_per_mesh_cycle"].as_u64());
+    assert_eq!(speeds[2]["steps_per_mesh_cycle"], 50);
+    assert!(summary["inputs"]["run"].get("steps_per_mesh_cycle").is_none(), "not one number for all speeds");
+    let check = |name: &str| text(&gearwright(scratch.path(), &["check", name]).stdout);
+    assert!(check("chosen.toml").contains(&format!("{} to 50; ", speeds[0]["steps_per_mesh_cycle"])));
+
+    // few that are given are taken, and it is said what to write
+    scratch.write("few.toml", &healthy().replace("speed_rpm = 3000.0", "mesh_frequency_hz = 500.0"));
+    let enough = format!("few: write steps_per_mesh_cycle = {},", speeds[0]["steps_per_mesh_cycle"]);
+    assert!(check("few.toml").contains("20 given") && check("few.toml").contains(&enough), "{}", check("few.toml"));
+}
+
+#[test]
 fn bad_input_is_told_with_its_line_and_what_is_allowed() {
     let scratch = Scratch::with_pair();
     for (from, to, says) in [
@@ -326,6 +359,8 @@ fn init_writes_a_case_that_checks() {
         assert!(output.status.success(), "{}", text(&output.stderr));
     }
     let output = gearwright(scratch.path(), &["check", "dynamics.toml"]);
-    assert!(text(&output.stdout).contains("1500.0 rpm, 25 mesh cycles recorded, 1 states"), "{}", text(&output.stderr));
+    let told = text(&output.stdout);
+    assert!(told.contains("1500.0 rpm, 25 mesh cycles recorded, 1 states"), "{}", text(&output.stderr));
+    assert!(told.contains(" chosen: ") && told.contains("in the natural period"), "{told}");
     assert!(text(&gearwright(scratch.path(), &["explain", "steady_tolerance"]).stdout).contains("default 0.0001"));
 }

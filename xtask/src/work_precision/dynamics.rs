@@ -7,7 +7,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use anyhow::{bail, ensure};
+use anyhow::{Context as _, bail, ensure};
 use fecm::dynamics::{
     DynamicsOptions, DynamicsRequest, InitialState, Integrator, PairDynamics, SteadySpec, StepSolver,
 };
@@ -94,7 +94,8 @@ fn scene(file: &str, name: &'static str, title: &'static str, severity: Option<u
     let damage = severity.and_then(|index| case.severities.get(index)).map(|(_, severity)| severity.damage.clone());
     ensure!(damage.is_some() == severity.is_some(), "{file} has no severity {severity:?}");
     ensure!(case.speeds.len() == 1, "{file} has {} speeds, not one", case.speeds.len());
-    let default = Numerics { model: case.statics.options.clone(), options: case.options.clone(), steps: case.steps };
+    let steps = case.steps.with_context(|| format!("{file} has no steps_per_mesh_cycle"))?;
+    let default = Numerics { model: case.statics.options.clone(), options: case.options.clone(), steps };
     Ok(Scene {
         name,
         title,

@@ -68,8 +68,7 @@ impl PairDynamics<'_> {
             let value = spec.periods as f64;
             return Err(FecmError::Option { name: "natural periods", value, allowed: "8 to 10000" });
         }
-        let guess = self.frequency_guess(spec.mesh_cycle, spec.torque)?;
-        let period = 1.0 / guess;
+        let period = 1.0 / self.mesh_vibration(&[spec.mesh_cycle], spec.torque)?.frequency;
         let pulse = TorquePulse { start: 0.0, duration: 0.125 * period, peak: spec.pulse * spec.torque };
         let request = DynamicsRequest {
             mesh_cycle: spec.mesh_cycle,

@@ -20,6 +20,7 @@ mod impulse;
 mod integrator;
 mod operator;
 mod options;
+mod resolution;
 mod result;
 mod run;
 mod schedule;
@@ -31,6 +32,7 @@ pub use options::{
     DynamicsOptions, DynamicsRequest, DynamicsState, InitialState, Motion, RotorInertia, RotorOptions, StepSolver,
     TorquePulse,
 };
+pub use resolution::MeshVibration;
 pub use result::{DynamicsRun, EnergyBalance, RunStats, Snapshot, StepRecord};
 pub use run::{PairDynamics, Runner, SteadySpec};
 pub use system::{Damping, HUB_COORDINATES, ROTATION, Support};

@@ -12,16 +12,16 @@ use super::schedule::{LEVELS, Place, Schedule, ScheduleSpec, mirrored};
 use super::system::{BodyTerms, Generalised, ROTATION, StepMatrix, System};
 use crate::error::FecmError;
 use crate::lcp::{FactorMemory, HeldBlock, HeldProblem, HeldSolution, solve_held, solve_held_by_lemke};
-use crate::statics::{Observer, PairModel, StaticsRequest};
+use crate::statics::{Observer, PairModel};
 
 /// A gear pair made ready to run: options checked, bodies assembled.
 pub struct PairDynamics<'a> {
-    model: &'a PairModel,
+    pub(super) model: &'a PairModel,
     /// What coast flanks see; the model itself where nothing is damaged.
     healthy: Option<PairModel>,
     options: DynamicsOptions,
     modes: PairModes,
-    system: System,
+    pub(super) system: System,
 }
 
 /// Steps whose operators are made ahead, in parallel.
@@ -108,33 +108,6 @@ impl<'a> PairDynamics<'a> {
         };
         let state = stepper.initial()?;
         Ok(Runner { stepper, state, energy: EnergyBalance::default(), prepared: None })
-    }
-
-    /// About the natural frequency of the pair on the tangent stiffness of a position (Hz), bearings held.
-    pub(super) fn frequency_guess(&self, mesh_cycle: f64, torque: f64) -> Result<f64, FecmError> {
-        let pairing = self.model.pairing();
-        let request = StaticsRequest {
-            mesh_cycles: vec![mesh_cycle],
-            torques: vec![torque],
-            stiffness_difference: false,
-            keep_pressure: false,
-        };
-        let solved = self.model.solve(&request, &())?;
-        let stiffness = solved.results.first().and_then(|row| row.first()).and_then(|r| r.stiffness_local_slope);
-        let stiffness = stiffness.ok_or(FecmError::NoEquilibrium { mesh_cycle, torque })?;
-        let inverse_mass: f64 = (0..2)
-            .filter(|&body| self.system.row(body, ROTATION).is_some())
-            .map(|body| pairing.base_radius(body).powi(2) / self.options.rotors[body].inertia.polar)
-            .sum();
-        if inverse_mass > 0.0 {
-            Ok((stiffness * inverse_mass).sqrt() / (2.0 * std::f64::consts::PI))
-        } else {
-            Err(FecmError::Option {
-                name: "free rotations",
-                value: 0.0,
-                allowed: "at least one gear whose rotation is not fixed",
-            })
-        }
     }
 
     /// Natural frequencies of the elastic modes kept of the pinion (0) or wheel (1), hub held (Hz).

@@ -193,6 +193,11 @@ impl System {
         y
     }
 
+    /// Mass of a rigid coordinate (kg, kg m^2).
+    pub fn mass(&self, coordinate: usize) -> f64 {
+        self.mass[(coordinate, coordinate)]
+    }
+
     /// Spring of a rigid coordinate (N/m, N m/rad).
     pub fn support_stiffness(&self, coordinate: usize) -> f64 {
         self.stiffness[coordinate]

@@ -70,7 +70,7 @@ pub fn execute(cli: &Cli) -> anyhow::Result<String> {
             let (loaded, file) = flags.load()?;
             run_case(&loaded, &file, flags.out.as_deref(), flags.threads)
         }
-        Command::Check { case } => Ok(format!("{}{}: valid\n", about(&case::load(case)?), case.display())),
+        Command::Check { case } => Ok(format!("{}{}: valid\n", about(&case::load(case)?)?, case.display())),
         Command::Init { kind, file } => init(kind, file.as_deref()),
         Command::Explain { key } => explain(key.as_deref()),
         Command::Schema { kind } => Ok(format!("{}\n", serde_json::to_string_pretty(&(known_kind(kind)?.schema)())?)),
@@ -116,8 +116,8 @@ fn init(kind: &str, file: Option<&Path>) -> anyhow::Result<String> {
 }
 
 /// What a valid case comes to, one line each.
-fn about(case: &Case) -> String {
-    match case {
+fn about(case: &Case) -> anyhow::Result<String> {
+    Ok(match case {
         Case::SpurPair(case) => {
             let notes: String = case.pair.findings().iter().map(|f| format!("note: {f}\n")).collect();
             let (positions, ratio) = (case.mesh_cycles.len(), case.pair.contact_ratio());
@@ -132,13 +132,15 @@ fn about(case: &Case) -> String {
             let speeds: Vec<String> =
                 case.speeds.iter().map(|w| format!("{:.1}", w * 30.0 / std::f64::consts::PI)).collect();
             let states = 1 + case.severities.len();
-            format!("{} rpm, {} mesh cycles recorded, {states} states\n", speeds.join(", "), case.cycles)
+            // the stiffness of the mesh takes the healthy gears
+            let steps = run::dynamics::steps_told(case)?;
+            format!("{} rpm, {} mesh cycles recorded, {states} states\n{steps}", speeds.join(", "), case.cycles)
         }
         Case::LumpedPair(case) => {
             let (mass, force) = (case.pair.effective_mass(), case.pair.mean_force());
             format!("moving mass {mass:.4} kg, mean mesh force {force:.1} N, {} damaged states\n", case.damaged.len())
         }
-    }
+    })
 }
 
 fn known_kind(name: &str) -> anyhow::Result<&'static CaseKind> {

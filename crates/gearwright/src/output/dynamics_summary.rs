@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use fecm::dynamics::{ImpulseReading, ROTATION, Support};
+use fecm::dynamics::{ImpulseReading, MeshVibration, ROTATION, Support};
 use serde::Serialize;
 
 use crate::case::DynamicsCase;
@@ -52,6 +52,10 @@ pub struct ModelSummary {
     mean_mesh_force_n: f64,
     /// Mass that moves along the line of action where hubs do not give way (kg).
     moving_mass_kg: f64,
+    /// Natural frequency of the healthy pair on the mean stiffness of its mesh (Hz); none without speeds.
+    natural_frequency_hz: Option<f64>,
+    /// Its damping ratio.
+    damping_ratio: Option<f64>,
     /// Base radii of pinion and gear (mm).
     base_radius_mm: [f64; 2],
     /// Coordinates of the hubs that move.
@@ -66,6 +70,12 @@ pub struct SpeedSummary {
     speed_rpm: f64,
     mesh_frequency_hz: f64,
     time_step_s: f64,
+    steps_per_mesh_cycle: usize,
+    /// Whether they are chosen by the program.
+    steps_chosen: bool,
+    steps_per_natural_period: f64,
+    /// Error they leave where a harmonic of the mesh frequency meets the natural frequency, over the motion there; none without damping.
+    error_at_resonance: Option<f64>,
     states: Vec<StateSummary>,
 }
 
@@ -136,7 +146,13 @@ pub struct DifferenceSummary {
 
 /// Collects the summary.
 #[must_use]
-pub fn summary<'a>(case: &'a DynamicsCase, speeds: &[Speed], blows: &[Blow], times: Times) -> Summary<'a> {
+pub fn summary<'a>(
+    case: &'a DynamicsCase,
+    vibration: Option<MeshVibration>,
+    speeds: &[Speed],
+    blows: &[Blow],
+    times: Times,
+) -> Summary<'a> {
     let pair = &case.statics.pair;
     let radii = [pair.pinion().base_radius(), pair.wheel().base_radius()];
     let force = case.torque / radii[1];
@@ -152,6 +168,8 @@ pub fn summary<'a>(case: &'a DynamicsCase, speeds: &[Speed], blows: &[Blow], tim
         model: ModelSummary {
             mean_mesh_force_n: force,
             moving_mass_kg: 1.0 / (turning(1) + if free { turning(0) } else { 0.0 }),
+            natural_frequency_hz: vibration.map(|v| v.frequency),
+            damping_ratio: vibration.map(|v| v.damping_ratio),
             base_radius_mm: radii.map(|r| r * 1e3),
             coordinates: coordinate_names(&moving_coordinates(case)),
             elastic_modes_hz: first.map_or_else(Default::default, |response| response.modes.clone()),
@@ -179,6 +197,10 @@ fn at_speed(speed: &Speed, mean_force: f64) -> SpeedSummary {
         speed_rpm: speed.speed * 30.0 / std::f64::consts::PI,
         mesh_frequency_hz: speed.mesh_frequency,
         time_step_s: speed.responses.first().map_or(0.0, |response| response.time_step),
+        steps_per_mesh_cycle: speed.resolution.steps,
+        steps_chosen: !speed.resolution.given,
+        steps_per_natural_period: speed.resolution.natural_steps,
+        error_at_resonance: Some(speed.resolution.error).filter(|error| error.is_finite()),
         states: speed.responses.iter().map(|response| of_state(response, speed.mesh_frequency, mean_force)).collect(),
     }
 }
@@ -246,9 +268,9 @@ fn difference(response: &Response, difference: &Difference, mesh_frequency: f64)
     }
 }
 
-/// The one-screen summary.
+/// The one-screen summary; `steps` tells those of a mesh cycle.
 #[must_use]
-pub fn screen(case: &DynamicsCase, s: &Summary<'_>) -> String {
+pub fn screen(case: &DynamicsCase, s: &Summary<'_>, steps: Option<&str>) -> String {
     let mut text = String::new();
     let title = if case.inputs.title.is_empty() { "gear pair dynamics" } else { &case.inputs.title };
     let _ = writeln!(text, "{title}");
@@ -260,6 +282,9 @@ pub fn screen(case: &DynamicsCase, s: &Summary<'_>) -> String {
         "moving mass, mean mesh force",
         format!("{:.4} kg, {:.1} N; {} coordinate(s)", m.moving_mass_kg, m.mean_mesh_force_n, m.coordinates.len()),
     );
+    if let Some(steps) = steps {
+        line("steps a mesh cycle", steps.to_owned());
+    }
     if let [speed] = s.speeds.as_slice() {
         line(
             "speed",

@@ -36,8 +36,8 @@ pub struct DynamicsCase {
     pub torque: f64,
     /// How runs start.
     pub initial: InitialState,
-    /// Steps of a mesh cycle.
-    pub steps: usize,
+    /// Steps of a mesh cycle, where given.
+    pub steps: Option<usize>,
     /// Mesh cycle at which the record begins, counted from the pitch point.
     pub from: f64,
     /// Added to mesh cycles counted from the pitch point.
@@ -66,7 +66,8 @@ pub fn resolve(mut inputs: Dynamics, document: &Node, folder: &Path) -> Result<D
     fill_defaults(&mut inputs, &statics, &severities);
     let speeds = speeds(&inputs, &statics, &mut fault);
     let cycles = inputs.run.mesh_cycles.unwrap_or_default();
-    let steps = f64::from(inputs.run.steps_per_mesh_cycle);
+    // those not given yet are not many more
+    let steps = f64::from(inputs.run.steps_per_mesh_cycle.unwrap_or(50));
     for (key, cycles) in [
         ("mesh_cycles", cycles),
         ("transient_mesh_cycles", inputs.run.transient_mesh_cycles.unwrap_or_default()),
@@ -108,7 +109,7 @@ pub fn resolve(mut inputs: Dynamics, document: &Node, folder: &Path) -> Result<D
             Start::Equilibrium => InitialState::Equilibrium,
             Start::Unloaded => InitialState::Unloaded,
         },
-        steps: inputs.run.steps_per_mesh_cycle as usize,
+        steps: inputs.run.steps_per_mesh_cycle.map(|steps| steps as usize),
         from: from - origin,
         origin,
         cycles: cycles as usize,

@@ -189,10 +189,11 @@ pub struct Run {
     /// Mesh frequency (Hz): a number, or a list.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mesh_frequency_hz: Option<Values>,
-    /// Steps of time in a mesh cycle. What counts is steps in a natural period: 50 a mesh cycle are enough near and above the natural frequency; far
-    /// below it take some 60 times natural over mesh frequency (docs/dynamics.md).
+    /// Steps of time in a mesh cycle. What counts is steps in a natural period (docs/dynamics.md). Default: at each speed as many as leave 2.5 % of the
+    /// motion where a harmonic of the mesh frequency meets the natural frequency, from 50 to 400; `check` and the summary tell them.
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 8, max = 10000))]
-    pub steps_per_mesh_cycle: u32,
+    pub steps_per_mesh_cycle: Option<u32>,
     /// Mesh cycle at which the record begins.
     #[schemars(range(min = -100000.0, max = 100000.0))]
     pub mesh_cycle_from: f64,
@@ -226,7 +227,7 @@ impl Default for Run {
         Self {
             speed_rpm: None,
             mesh_frequency_hz: None,
-            steps_per_mesh_cycle: 50,
+            steps_per_mesh_cycle: None,
             mesh_cycle_from: 0.0,
             mesh_cycle_origin: None,
             mesh_cycles: None,

@@ -29,7 +29,7 @@ pub fn write(
     else {
         return Ok(());
     };
-    let length = ((film.mesh_cycle_to - film.mesh_cycle_from) * case.steps as f64).round() as usize + 1;
+    let length = ((film.mesh_cycle_to - film.mesh_cycle_from) * response.plan.cycle as f64).round() as usize + 1;
     let length = length.min(response.samples.len() - offset);
     let first = start.0.step + 1;
     let frames: Vec<i64> = (0..length as i64).step_by(film.every_steps as usize).map(|k| first + k).collect();

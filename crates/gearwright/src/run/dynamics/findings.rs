@@ -4,6 +4,7 @@ use fecm::dynamics::{HUB_COORDINATES, ImpulseReading, RotorOptions, Support};
 use hums::moments::Moments;
 use lpm::Spectrum;
 
+use super::resolution::Resolution;
 use super::simulate::{Plan, Progress, Sample, SavedState, Work};
 use crate::case::DynamicsCase;
 
@@ -14,6 +15,8 @@ pub struct Speed {
     pub speed: f64,
     /// Mesh frequency (Hz).
     pub mesh_frequency: f64,
+    /// Steps of a mesh cycle.
+    pub resolution: Resolution,
     /// The healthy pair first.
     pub responses: Vec<Response>,
 }
@@ -91,9 +94,9 @@ pub struct Difference {
 impl Speed {
     /// Responses at a speed.
     #[must_use]
-    pub fn new(case: &DynamicsCase, speed: f64, responses: Vec<Response>) -> Self {
+    pub fn new(case: &DynamicsCase, speed: f64, resolution: Resolution, responses: Vec<Response>) -> Self {
         let teeth = f64::from(case.statics.pair.pinion().teeth());
-        Self { speed, mesh_frequency: speed * teeth / (2.0 * std::f64::consts::PI), responses }
+        Self { speed, mesh_frequency: speed * teeth / (2.0 * std::f64::consts::PI), resolution, responses }
     }
 }
 
@@ -131,7 +134,7 @@ impl Response {
         healthy: Option<&Self>,
     ) -> anyhow::Result<Self> {
         let teeth = f64::from(case.statics.pair.pinion().teeth());
-        let steps = case.steps as f64;
+        let steps = plan.cycle as f64;
         let time_step = 2.0 * std::f64::consts::PI / (teeth * plan.speed * steps);
         let before = progress.before_record.unwrap_or_default();
         let left = progress.transient_left(plan);
@@ -139,7 +142,7 @@ impl Response {
         // a record after some periods is told as the first one: its teeth stand where those of the first did
         let periods_before = match plan.transient {
             Some(_) => 0,
-            None => (before / case.steps as i64) as i32,
+            None => (before / plan.cycle as i64) as i32,
         };
         for (pair, _) in samples.iter_mut().flat_map(|sample| &mut sample.pairs) {
             *pair -= periods_before;
@@ -149,7 +152,7 @@ impl Response {
         let spectrum = Spectrum::of(&signal, duration)?;
         let difference = healthy.map(|healthy| Difference::new(&signal, healthy, duration)).transpose()?;
         let tolerance = case.inputs.run.steady_tolerance;
-        let period = plan.period / case.steps;
+        let period = plan.period / plan.cycle;
         Ok(Self {
             state: state.into(),
             number,

@@ -3,6 +3,7 @@
 pub mod checkpoint;
 pub mod film;
 pub mod findings;
+pub mod resolution;
 pub mod simulate;
 
 use std::path::Path;
@@ -48,8 +49,10 @@ pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> an
     if checkpoint.is_taken_up() {
         observer.stage(&format!("taking up {}", checkpoint.file().display()));
     }
+    let (vibration, resolutions) = resolution::resolutions(case, &states[0].model)?.unzip();
+    let told = vibration.zip(resolutions.as_ref()).map(|(vibration, all)| resolution::told(&vibration, all));
     let mut speeds = Vec::new();
-    for (row, &speed) in case.speeds.iter().enumerate() {
+    for (row, (&speed, resolution)) in case.speeds.iter().zip(resolutions.into_iter().flatten()).enumerate() {
         let mut responses: Vec<Response> = Vec::new();
         for (column, state) in states.iter().enumerate() {
             let index = row * states.len() + column;
@@ -57,7 +60,8 @@ pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> an
             let dynamics = PairDynamics::new(&state.model, &case.options)?;
             let modes = [0, 1].map(|body| dynamics.mode_frequencies(body));
             let healthy = responses.first();
-            let plan = Plan::new(case, speed, dynamics.period(), healthy.and_then(|healthy| healthy.shrink));
+            let plan =
+                Plan::new(case, speed, resolution.steps, dynamics.period(), healthy.and_then(|healthy| healthy.shrink));
             let mut progress = checkpoint.run(index);
             let mut save = |progress: &simulate::Progress| checkpoint.save(index, progress);
             if !progress.complete {
@@ -76,7 +80,7 @@ pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> an
             let response = Response::new(case, &plan, progress, (&state.name, state.number), modes, healthy)?;
             responses.push(response);
         }
-        speeds.push(Speed::new(case, speed, responses));
+        speeds.push(Speed::new(case, speed, resolution, responses));
     }
     times.response = clock.elapsed().as_secs_f64();
 
@@ -121,12 +125,24 @@ pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> an
         }
     }
     times.output = clock.elapsed().as_secs_f64();
-    let whole = summary::summary(case, &speeds, &blows, times);
+    let whole = summary::summary(case, vibration, &speeds, &blows, times);
     std::fs::write(folder.file("summary.json"), serde_json::to_string_pretty(&whole)?)?;
-    let screen = summary::screen(case, &whole);
+    let screen = summary::screen(case, &whole, told.as_deref());
     let folder = folder.publish()?;
     checkpoint.remove();
     Ok(Finished { folder, screen, unusable: 0 })
+}
+
+/// The steps of a mesh cycle a run of the case takes, and why; nothing for a case without speeds.
+///
+/// # Errors
+/// Those of the model of the healthy pair.
+pub fn steps_told(case: &DynamicsCase) -> anyhow::Result<String> {
+    if case.speeds.is_empty() {
+        return Ok(String::new());
+    }
+    let found = resolution::resolutions(case, &healthy(case)?)?;
+    Ok(found.map_or_else(String::new, |(v, all)| format!("steps a mesh cycle: {}\n", resolution::told(&v, &all))))
 }
 
 fn stage(case: &DynamicsCase, speed: f64, state: &str) -> String {
@@ -136,10 +152,17 @@ fn stage(case: &DynamicsCase, speed: f64, state: &str) -> String {
     }
 }
 
+/// The pair without damage.
+///
+/// # Errors
+/// Those of the model.
+pub fn healthy(case: &DynamicsCase) -> anyhow::Result<PairModel> {
+    PairModel::new(&case.statics.pair, &case.statics.options).context("the gears cannot be modelled")
+}
+
 /// The healthy pair, then each severity.
 fn states(case: &DynamicsCase) -> anyhow::Result<Vec<State>> {
-    let statics = &case.statics;
-    let healthy = PairModel::new(&statics.pair, &statics.options).context("the gears cannot be modelled")?;
+    let healthy = healthy(case)?;
     let mut states = vec![State { name: HEALTHY.into(), number: None, model: healthy }];
     for (number, (_, severity)) in case.severities.iter().enumerate() {
         // derived from the state before: what they have in common is computed once

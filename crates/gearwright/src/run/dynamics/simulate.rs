@@ -109,6 +109,8 @@ const MOST_SHRINK: f64 = 0.99;
 pub struct Plan {
     /// Mean speed of the pinion (rad/s).
     pub speed: f64,
+    /// Mesh cycle.
+    pub cycle: usize,
     /// Period of the excitation.
     pub period: usize,
     /// Record.
@@ -124,19 +126,20 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// For a state whose teeth repeat after `period` mesh cycles; `shrink` is how much of a transient a mesh cycle leaves, where known.
+    /// For a state whose teeth repeat after `period` mesh cycles of `cycle` steps; `shrink` is how much of a transient a mesh cycle leaves, where known.
     #[must_use]
-    pub fn new(case: &DynamicsCase, speed: f64, period: i64, shrink: Option<f64>) -> Self {
+    pub fn new(case: &DynamicsCase, speed: f64, cycle: usize, period: i64, shrink: Option<f64>) -> Self {
         let run = &case.inputs.run;
-        let steps = |cycles: u32| case.steps * cycles as usize;
+        let steps = |cycles: u32| cycle * cycles as usize;
         let film = case.inputs.output.film.map(|film| {
-            let first = (film.mesh_cycle_from - run.mesh_cycle_from) * case.steps as f64;
-            (first.round() as usize).min(case.steps * case.cycles - 1)
+            let first = (film.mesh_cycle_from - run.mesh_cycle_from) * cycle as f64;
+            (first.round() as usize).min(cycle * case.cycles - 1)
         });
         Self {
             speed,
-            period: case.steps * period.max(1) as usize,
-            record: case.steps * case.cycles,
+            cycle,
+            period: cycle * period.max(1) as usize,
+            record: cycle * case.cycles,
             transient: run.transient_mesh_cycles.map(steps),
             most: steps(run.steady_limit_mesh_cycles),
             shrink: shrink.map(|shrink| shrink.powf(period.max(1) as f64)),
@@ -147,10 +150,10 @@ impl Plan {
     /// What the engine is asked for.
     #[must_use]
     pub fn request(&self, case: &DynamicsCase, initial: InitialState, snapshots: Vec<i64>) -> DynamicsRequest {
-        let lead = (self.transient.unwrap_or(0) + 1) as f64 / case.steps as f64;
+        let lead = (self.transient.unwrap_or(0) + 1) as f64 / self.cycle as f64;
         DynamicsRequest {
             mesh_cycle: case.from - lead,
-            motion: Motion::Running { speed: self.speed, steps_per_cycle: case.steps },
+            motion: Motion::Running { speed: self.speed, steps_per_cycle: self.cycle },
             torque: case.torque,
             pulse: None,
             initial,
