@@ -3,7 +3,7 @@
 #[macro_use]
 mod common;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use common::{Scratch, gearwright, text};
@@ -53,18 +53,6 @@ impl Scratch {
         let scratch = Self::new();
         scratch.write("spur.toml", SPUR);
         scratch
-    }
-
-    /// Runs a case text into a folder of its name; the folder and its summary.
-    fn run(&self, name: &str, content: &str) -> (PathBuf, Value) {
-        self.write(&format!("{name}.toml"), content);
-        let output = gearwright(self.path(), &["run", &format!("{name}.toml"), "--out", name]);
-        assert!(output.status.success(), "{name}: {}", text(&output.stderr));
-        let screen = text(&output.stdout);
-        assert!(screen.lines().count() < 25, "more than one screen: {screen}");
-        let folder = self.path().join(name);
-        let summary = std::fs::read_to_string(folder.join("summary.json")).unwrap();
-        (folder, serde_json::from_str(&summary).unwrap())
     }
 }
 

@@ -5,23 +5,7 @@ mod common;
 
 use common::{Scratch, gearwright, text};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-
-use serde_json::Value;
-
-impl Scratch {
-    /// Runs a case text into a folder of its name; the folder and its summary.
-    fn run(&self, name: &str, content: &str) -> (PathBuf, Value) {
-        self.write(&format!("{name}.toml"), content);
-        let output = gearwright(self.path(), &["run", &format!("{name}.toml"), "--out", name]);
-        assert!(output.status.success(), "{name}: {}", text(&output.stderr));
-        let screen = text(&output.stdout);
-        assert!(screen.lines().count() < 25, "more than one screen: {screen}");
-        let folder = self.path().join(name);
-        let summary = std::fs::read_to_string(folder.join("summary.json")).unwrap();
-        (folder, serde_json::from_str(&summary).unwrap())
-    }
-}
+use std::path::Path;
 
 /// Table 3.2 with the two stiffnesses that its natural frequencies imply, and one state 10 % softer for a cycle.
 const CASE: &str = r#"kind = "lumped-pair"

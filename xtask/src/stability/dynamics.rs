@@ -29,7 +29,7 @@ pub fn cases() -> Table {
          it closes to rounding.",
         &[("violation", 1e-9), ("complementarity", 1e-9), ("energy", 1e-6)],
     );
-    let pair_model = match USUAL.pair().and_then(|pair| model(&pair, FaceModel::PlaneStress)) {
+    let pair_model = match USUAL.pair().map_err(Into::into).and_then(|pair| model(&pair, FaceModel::PlaneStress)) {
         Ok(model) => model,
         Err(error) => {
             table.answered("the pair at rest", || Err(error));

@@ -8,6 +8,7 @@ mod dynamics;
 mod geometry;
 mod hums;
 mod lumped;
+#[path = "../../../crates/fecm/tests/common/proportions.rs"]
 mod pairs;
 mod statics;
 

@@ -41,6 +41,8 @@ torque_n_m = 200.0
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use serde_json::Value;
+
 /// Runs the program in a folder.
 pub fn gearwright(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_gearwright")).args(arguments).current_dir(folder).output().unwrap()
@@ -71,6 +73,18 @@ impl Scratch {
         std::fs::create_dir_all(file.parent().unwrap()).unwrap();
         std::fs::write(&file, content).unwrap();
         file
+    }
+
+    /// Runs a case text into a folder of its name; the folder and its summary.
+    pub fn run(&self, name: &str, content: &str) -> (PathBuf, Value) {
+        self.write(&format!("{name}.toml"), content);
+        let output = gearwright(self.path(), &["run", &format!("{name}.toml"), "--out", name]);
+        assert!(output.status.success(), "{name}: {}", text(&output.stderr));
+        let screen = text(&output.stdout);
+        assert!(screen.lines().count() < 25, "more than one screen: {screen}");
+        let folder = self.path().join(name);
+        let summary = std::fs::read_to_string(folder.join("summary.json")).unwrap();
+        (folder, serde_json::from_str(&summary).unwrap())
     }
 
     /// Names in it, sorted.

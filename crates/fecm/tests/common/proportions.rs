@@ -1,6 +1,8 @@
-//! Gear pairs of extreme proportions.
+//! Gear pairs of any proportions, usual ones to start from: what extreme cases vary.
+// every binary uses a part of it
+#![allow(dead_code)]
 
-use gear_geom::{FilletSpec, Gear, GearKind, GearPair, GearSpec, ToothThickness};
+use gear_geom::{FilletSpec, Gear, GearKind, GearPair, GearSpec, GeometryErrors, ToothThickness};
 
 /// Two gears and what loads them.
 #[derive(Debug, Clone, Copy)]
@@ -54,14 +56,14 @@ impl Proportions {
     }
 
     /// Both external.
-    pub fn pair(&self) -> anyhow::Result<GearPair> {
+    pub fn pair(&self) -> Result<GearPair, GeometryErrors> {
         let [pinion, wheel] = self.teeth;
         let centre = self.reference_radius(pinion) + self.reference_radius(wheel) + self.apart * self.module;
-        Ok(GearPair::new(Gear::new(&self.spec(pinion))?, Gear::new(&self.spec(wheel))?, centre)?)
+        GearPair::new(Gear::new(&self.spec(pinion))?, Gear::new(&self.spec(wheel))?, centre)
     }
 
     /// The second one a ring of stub teeth.
-    pub fn internal_pair(&self) -> anyhow::Result<GearPair> {
+    pub fn internal_pair(&self) -> Result<GearPair, GeometryErrors> {
         let [pinion, ring] = self.teeth;
         let radius = self.reference_radius(ring);
         let spec = GearSpec {
@@ -73,7 +75,7 @@ impl Proportions {
             ..self.spec(ring)
         };
         let centre = radius - self.reference_radius(pinion);
-        Ok(GearPair::new(Gear::new(&self.spec(pinion))?, Gear::new(&spec)?, centre)?)
+        GearPair::new(Gear::new(&self.spec(pinion))?, Gear::new(&spec)?, centre)
     }
 
     /// Torque on the wheel (N m) that loads the teeth with 100 N per mm of face and mm of module.
