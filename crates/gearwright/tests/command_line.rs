@@ -201,6 +201,10 @@ fn every_case_of_the_repository_is_valid() {
     let mut count = 0;
     for entry in std::fs::read_dir(&configs).unwrap() {
         let file = entry.unwrap().path();
+        // some cases refer to other files beside them
+        if file.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
         let output = gearwright(&configs, &["check", &file.to_string_lossy()]);
         assert!(output.status.success(), "{}", text(&output.stderr));
         count += 1;

@@ -6,7 +6,7 @@ use serde_json::Value as Json;
 
 use super::document::Node;
 use super::fault::Fault;
-use super::{Case, dynamics, lumped_pair, recording, spur_pair};
+use super::{Case, dynamics, lumped_pair, recording, spur_pair, transmission};
 
 /// A kind of case file.
 #[derive(Debug, Clone, Copy)]
@@ -24,7 +24,8 @@ pub struct CaseKind {
 }
 
 /// All kinds.
-pub const KINDS: &[CaseKind] = &[spur_pair::KIND, lumped_pair::KIND, dynamics::KIND, recording::KIND];
+pub const KINDS: &[CaseKind] =
+    &[spur_pair::KIND, lumped_pair::KIND, dynamics::KIND, transmission::KIND, recording::KIND];
 
 /// The kind of a name.
 #[must_use]

@@ -13,6 +13,7 @@ pub mod recording;
 pub mod reference;
 pub mod spur_pair;
 pub mod template;
+pub mod transmission;
 
 use std::path::Path;
 
@@ -24,6 +25,7 @@ use kind::CaseKind;
 pub use lumped_pair::LumpedPairCase;
 pub use recording::RecordingCase;
 pub use spur_pair::SpurPairCase;
+pub use transmission::TransmissionCase;
 
 /// A case file, checked and resolved.
 #[derive(Debug, Clone)]
@@ -35,6 +37,8 @@ pub enum Case {
     LumpedPair(Box<LumpedPairCase>),
     /// Finite-element/contact-mechanics dynamics of a gear pair.
     Dynamics(Box<DynamicsCase>),
+    /// Vibration of a planetary transmission.
+    Transmission(Box<TransmissionCase>),
     /// Condition indicators of recorded vibration.
     Recording(Box<RecordingCase>),
 }
@@ -47,6 +51,7 @@ impl Case {
             Self::SpurPair(_) => spur_pair::KIND.name,
             Self::LumpedPair(_) => lumped_pair::KIND.name,
             Self::Dynamics(_) => dynamics::KIND.name,
+            Self::Transmission(_) => transmission::KIND.name,
             Self::Recording(_) => recording::KIND.name,
         }
     }

@@ -42,7 +42,7 @@ enum Command {
     },
     /// Write a commented case file to start from.
     Init {
-        /// Kind of case: spur-pair, lumped-pair, dynamics, recording.
+        /// Kind of case: spur-pair, lumped-pair, dynamics, transmission, recording.
         kind: String,
         /// File to write; default: <kind>.toml.
         file: Option<PathBuf>,
@@ -135,6 +135,22 @@ fn about(case: &Case) -> anyhow::Result<String> {
             // the stiffness of the mesh takes the healthy gears
             let steps = run::dynamics::steps_told(case)?;
             format!("{} rpm, {} mesh cycles recorded, {states} states\n{steps}", speeds.join(", "), case.cycles)
+        }
+        Case::Transmission(case) => {
+            let (speeds, train) = (&case.speeds, &case.train);
+            format!(
+                "{} planets, carrier {:.1} rpm, planetary mesh frequency {:.1} Hz, planet pass {:.3} Hz\n\
+                 same teeth of sun and ring meet again after {} carrier turns, all teeth after {}\n\
+                 {} sensors, {} states\n",
+                train.planets(),
+                speeds.carrier * 30.0 / std::f64::consts::PI,
+                speeds.mesh_frequency,
+                speeds.planet_pass_frequency,
+                train.sun_ring_period(),
+                train.hunting_period(),
+                case.sensors.len(),
+                1 + case.severities.len()
+            )
         }
         Case::LumpedPair(case) => {
             let (mass, force) = (case.pair.effective_mass(), case.pair.mean_force());

@@ -13,4 +13,6 @@ pub mod recording_summary;
 pub mod stress;
 pub mod summary;
 pub mod tables;
+pub mod transmission_summary;
+pub mod transmission_tables;
 pub mod vtu;

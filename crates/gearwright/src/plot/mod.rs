@@ -4,8 +4,10 @@ mod dashes;
 pub mod drawing;
 pub mod dynamics;
 pub mod lumped;
+pub mod polar;
 pub mod recording;
 pub mod statics;
+pub mod transmission;
 
 use std::path::Path;
 
@@ -145,6 +147,24 @@ pub struct FlankMap {
 
 /// Pixels per unit of the PNG files.
 const PNG_SCALE: f32 = 2.0;
+
+/// Columns of a line chart: more points would not be seen.
+const COLUMNS: usize = 900;
+
+/// At most two points a column, its extremes in their order: nothing that would be seen is lost.
+fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    if points.len() <= 2 * COLUMNS {
+        return points.to_vec();
+    }
+    let mut kept = Vec::with_capacity(2 * COLUMNS);
+    for part in points.chunks(points.len().div_ceil(COLUMNS)) {
+        let by = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
+        if let (Some(low), Some(high)) = (part.iter().min_by(by), part.iter().max_by(by)) {
+            kept.extend(if low.0 <= high.0 { [*low, *high] } else { [*high, *low] });
+        }
+    }
+    kept
+}
 
 fn journal(layout: Layout) -> Layout {
     layout

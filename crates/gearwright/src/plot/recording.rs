@@ -8,10 +8,8 @@ use crate::run::recording::Outcome;
 use crate::run::recording::measure::{Channel, Detail, Row};
 use crate::run::recording::trend;
 
-use super::{COLOURS, Chart, Line, Mark, MarkedChart, Pattern, PolarChart};
+use super::{COLOURS, Chart, Line, Mark, MarkedChart, Pattern, PolarChart, thinned};
 
-/// Columns of a line chart: more points would not be seen.
-const COLUMNS: usize = 900;
 /// Mesh harmonics in the order spectrum.
 const HARMONICS: usize = 4;
 /// Channels that get their own figures.
@@ -96,21 +94,6 @@ fn chart(title: String, x_label: &str, y_label: String, lines: Vec<Line>) -> Cha
 
 fn line(name: &str, index: usize, points: Vec<(f64, f64)>) -> Line {
     Line { name: name.into(), points, pattern: Pattern::Solid, colour: COLOURS[index % COLOURS.len()] }
-}
-
-/// At most two points a column, its extremes in their order: nothing that would be seen is lost.
-fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    if points.len() <= 2 * COLUMNS {
-        return points.to_vec();
-    }
-    let mut kept = Vec::with_capacity(2 * COLUMNS);
-    for part in points.chunks(points.len().div_ceil(COLUMNS)) {
-        let by = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
-        if let (Some(low), Some(high)) = (part.iter().min_by(by), part.iter().max_by(by)) {
-            kept.extend(if low.0 <= high.0 { [*low, *high] } else { [*high, *low] });
-        }
-    }
-    kept
 }
 
 fn over_period(case: &RecordingCase, samples: &[f64]) -> Vec<(f64, f64)> {

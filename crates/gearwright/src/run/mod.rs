@@ -4,6 +4,7 @@ pub mod dynamics;
 pub mod lumped_pair;
 pub mod recording;
 pub mod spur_pair;
+pub mod transmission;
 
 use std::path::{Path, PathBuf};
 
@@ -39,6 +40,7 @@ pub fn run(case: &Case, target: &Path, observer: &dyn RunObserver) -> anyhow::Re
         Case::SpurPair(case) => spur_pair::run(case, target, observer),
         Case::LumpedPair(case) => lumped_pair::run(case, target, observer),
         Case::Dynamics(case) => dynamics::run(case, target, observer),
+        Case::Transmission(case) => transmission::run(case, target, observer),
         Case::Recording(case) => recording::run(case, target, observer),
     }
 }

@@ -39,10 +39,61 @@ pub fn severities(
     folder: &Path,
     faults: &mut Vec<Fault>,
 ) -> Vec<Severity> {
-    let lists = inputs.damage.iter().flat_map(|damage| values_of(damage).into_iter().map(|(_, values)| values));
-    let count = lists.map(|values| if let Values::Each(list) = values { list.len() } else { 1 }).max().unwrap_or(1);
-    for (index, damage) in inputs.damage.iter().enumerate() {
-        for (name, values) in values_of(damage) {
+    let lists: Vec<_> = inputs.damage.iter().map(|damage| values_of(damage.shapes())).collect();
+    let count = count(&lists, document, faults);
+    if inputs.damage.is_empty() || !faults.is_empty() {
+        return Vec::new();
+    }
+    (0..count).filter_map(|k| severity(inputs, pair, k, document, folder, faults)).collect()
+}
+
+/// What of a damage section describes the damage itself, wherever it is.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::case) struct Shapes<'a> {
+    /// A root crack.
+    pub crack: Option<&'a Crack>,
+    /// A pit.
+    pub pit: Option<&'a PitKeys>,
+    /// Wear.
+    pub wear: Option<&'a Wear>,
+    /// A broken corner.
+    pub broken_corner: Option<&'a BrokenCorner>,
+}
+
+/// The tooth that is damaged.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::case) struct Site<'a> {
+    /// The pair it is judged in.
+    pub pair: &'a GearPair,
+    /// Which gear of the pair.
+    pub member: gear_geom::Member,
+    /// Whether the model has a face along which damage may vary.
+    pub solid: bool,
+    /// Where files are looked for.
+    pub folder: &'a Path,
+}
+
+impl Damage {
+    fn shapes(&self) -> Shapes<'_> {
+        Shapes {
+            crack: self.crack.as_ref(),
+            pit: self.pit.as_ref(),
+            wear: self.wear.as_ref(),
+            broken_corner: self.broken_corner.as_ref(),
+        }
+    }
+}
+
+/// Number of severities of sections with these lists; lists of unlike lengths are faults.
+pub(in crate::case) fn count(
+    sections: &[Vec<(&'static str, &Values)>],
+    document: &Node,
+    faults: &mut Vec<Fault>,
+) -> usize {
+    let length = |values: &Values| if let Values::Each(list) = values { list.len() } else { 1 };
+    let count = sections.iter().flatten().map(|(_, values)| length(values)).max().unwrap_or(1);
+    for (index, section) in sections.iter().enumerate() {
+        for (name, values) in section {
             if let Values::Each(list) = values
                 && list.len() != count
             {
@@ -52,14 +103,11 @@ pub fn severities(
             }
         }
     }
-    if inputs.damage.is_empty() || !faults.is_empty() {
-        return Vec::new();
-    }
-    (0..count).filter_map(|k| severity(inputs, pair, k, document, folder, faults)).collect()
+    count
 }
 
 /// Keys that may hold lists.
-fn values_of(damage: &Damage) -> Vec<(&'static str, &Values)> {
+pub(in crate::case) fn values_of(damage: Shapes<'_>) -> Vec<(&'static str, &Values)> {
     let crack = damage
         .crack
         .iter()
@@ -73,7 +121,8 @@ fn values_of(damage: &Damage) -> Vec<(&'static str, &Values)> {
     optional.filter_map(|(name, values)| values.as_ref().map(|values| (name, values))).chain(corner).collect()
 }
 
-fn at(values: &Values, severity: usize) -> f64 {
+/// Value of a severity.
+pub(in crate::case) fn at(values: &Values, severity: usize) -> f64 {
     match values {
         Values::One(value) => *value,
         Values::Each(list) => list[severity],
@@ -103,95 +152,101 @@ fn severity(
             fault("tooth", format!("this gear has teeth 0 to {}", gear.teeth() - 1));
         }
         let solid = inputs.analysis.model == Model::Solid;
-        let made = match (&keys.crack, &keys.pit, &keys.wear, &keys.broken_corner) {
-            (Some(crack), None, None, None) => {
-                let loaded = pair.working_side(member);
-                let side = match crack.side {
-                    CrackSide::Drive => loaded,
-                    CrackSide::Coast => loaded.other(),
-                };
-                let made = root_crack(crack, gear, side, index, &mut fault);
-                if made.as_ref().is_some_and(|crack| !solid && !crack.front.is_through()) {
-                    let message = "this crack varies along the face: it needs analysis.model = \"3d\"";
-                    fault("crack.front_percent", message.into());
-                }
-                if crack.side == CrackSide::Coast && made.as_ref().is_some_and(|crack| !crack.front.is_through()) {
-                    let message =
-                        "the faces of a crack that varies along the face carry no contact: only side = \"drive\"";
-                    fault("crack.side", message.into());
-                }
-                // the coarsest mesh tells whether the crack stays in the tooth
-                let density = fecm::MeshDensity { order: 1, density: 1.0 };
-                let mesh = |crack| SectorMesh::with_crack(gear, &density, Some(crack), "gear");
-                if let Some(Err(error)) = made.as_ref().map(mesh) {
-                    fault("crack", error.to_string());
-                }
-                made.map(gear_geom::Damage::Crack)
-            }
-            (None, Some(_), None, None) if !solid => {
-                fault("pit", "a pit varies along the face: it needs analysis.model = \"3d\"".into());
-                None
-            }
-            (None, Some(keys), None, None) => pit(keys, pair, member, index, &mut fault).map(gear_geom::Damage::Pit),
-            (None, None, Some(keys), None) => {
-                let made = wear(keys, gear, index, folder, &mut fault);
-                if made.as_ref().is_some_and(|table| !solid && table.face.len() > 1) {
-                    fault("wear.table", "this wear varies along the face: it needs analysis.model = \"3d\"".into());
-                }
-                made.map(gear_geom::Damage::Wear)
-            }
-            (None, None, None, Some(_)) if !solid => {
-                let message = "a broken corner varies along the face: it needs analysis.model = \"3d\"";
-                fault("broken_corner", message.into());
-                None
-            }
-            (None, None, None, Some(keys)) => {
-                broken_corner(keys, gear, index, &mut fault).map(gear_geom::Damage::BrokenCorner)
-            }
-            _ => {
-                fault(
-                    "",
-                    "give either a crack or a pit or wear or a broken corner, each in a section of its own".into(),
-                );
-                None
-            }
-        };
+        let made = damage_of(keys.shapes(), Site { pair, member, solid, folder }, index, &mut fault);
         if faults.len() > before {
             return None;
         }
         let slot = usize::from(keys.on == Member::Gear);
         damage[slot].push(ToothDamage { tooth: i64::from(keys.tooth), damage: made? });
-        labels.push(label(keys, index));
+        labels.push(label(keys.shapes(), index));
     }
-    // many sections are one shape made of parts
-    let label = if labels.len() > MOST_LABELS {
-        format!("{} and {} more", labels[0], labels.len() - 1)
-    } else {
-        labels.join(", ")
-    };
-    Some(Severity { label, damage })
+    Some(Severity { label: joined(&labels), damage })
 }
 
-fn label(damage: &Damage, index: usize) -> String {
+/// Label of a severity of several damages; many sections are one shape made of parts.
+pub(in crate::case) fn joined(labels: &[String]) -> String {
+    if labels.len() > MOST_LABELS { format!("{} and {} more", labels[0], labels.len() - 1) } else { labels.join(", ") }
+}
+
+/// One damage of a severity, with every fault at its key below the section's.
+pub(in crate::case) fn damage_of(
+    shapes: Shapes<'_>,
+    site: Site<'_>,
+    index: usize,
+    fault: &mut impl FnMut(&str, String),
+) -> Option<gear_geom::Damage> {
+    let Site { pair, member, solid, folder } = site;
+    let gear = pair.gear(member);
+    match (shapes.crack, shapes.pit, shapes.wear, shapes.broken_corner) {
+        (Some(crack), None, None, None) => {
+            let loaded = pair.working_side(member);
+            let side = match crack.side {
+                CrackSide::Drive => loaded,
+                CrackSide::Coast => loaded.other(),
+            };
+            let made = root_crack(crack, gear, side, index, fault);
+            if made.as_ref().is_some_and(|crack| !solid && !crack.front.is_through()) {
+                let message = "this crack varies along the face: it needs analysis.model = \"3d\"";
+                fault("crack.front_percent", message.into());
+            }
+            if crack.side == CrackSide::Coast && made.as_ref().is_some_and(|crack| !crack.front.is_through()) {
+                let message = "the faces of a crack that varies along the face carry no contact: only side = \"drive\"";
+                fault("crack.side", message.into());
+            }
+            // the coarsest mesh tells whether the crack stays in the tooth
+            let density = fecm::MeshDensity { order: 1, density: 1.0 };
+            let mesh = |crack| SectorMesh::with_crack(gear, &density, Some(crack), "gear");
+            if let Some(Err(error)) = made.as_ref().map(mesh) {
+                fault("crack", error.to_string());
+            }
+            made.map(gear_geom::Damage::Crack)
+        }
+        (None, Some(_), None, None) if !solid => {
+            fault("pit", "a pit varies along the face: it needs analysis.model = \"3d\"".into());
+            None
+        }
+        (None, Some(keys), None, None) => pit(keys, pair, member, index, fault).map(gear_geom::Damage::Pit),
+        (None, None, Some(keys), None) => {
+            let made = wear(keys, gear, index, folder, fault);
+            if made.as_ref().is_some_and(|table| !solid && table.face.len() > 1) {
+                fault("wear.table", "this wear varies along the face: it needs analysis.model = \"3d\"".into());
+            }
+            made.map(gear_geom::Damage::Wear)
+        }
+        (None, None, None, Some(_)) if !solid => {
+            let message = "a broken corner varies along the face: it needs analysis.model = \"3d\"";
+            fault("broken_corner", message.into());
+            None
+        }
+        (None, None, None, Some(keys)) => broken_corner(keys, gear, index, fault).map(gear_geom::Damage::BrokenCorner),
+        _ => {
+            fault("", "give either a crack or a pit or wear or a broken corner, each in a section of its own".into());
+            None
+        }
+    }
+}
+
+/// What distinguishes a severity.
+pub(in crate::case) fn label(damage: Shapes<'_>, index: usize) -> String {
     let show = |values: &Option<Values>| values.as_ref().map(|v| at(v, index));
-    if let Some(keys) = &damage.crack {
+    if let Some(keys) = damage.crack {
         let crack = if keys.front_percent.is_empty() { "crack" } else { "crack up to" };
         match (show(&keys.length_percent), show(&keys.length_mm)) {
             (Some(percent), _) => format!("{crack} {percent} %"),
             (_, length) => format!("{crack} {} mm", length.unwrap_or_default()),
         }
-    } else if let Some(pit) = &damage.pit {
+    } else if let Some(pit) = damage.pit {
         match (show(&pit.width_mm), show(&pit.height_mm)) {
             (Some(width), Some(height)) => format!("pit {width} x {height} mm"),
             _ => "pit".into(),
         }
-    } else if let Some(wear) = &damage.wear {
+    } else if let Some(wear) = damage.wear {
         match (show(&wear.depth_um), show(&wear.scale)) {
             (Some(depth), _) => format!("wear {depth} µm"),
             (_, Some(scale)) => format!("wear x {scale}"),
             _ => "wear".into(),
         }
-    } else if let Some(corner) = &damage.broken_corner {
+    } else if let Some(corner) = damage.broken_corner {
         format!("corner {} x {} mm", at(&corner.length_mm, index), at(&corner.height_mm, index))
     } else {
         String::new()

@@ -10,7 +10,9 @@ use gear_geom::{
 };
 
 use super::damage::{Severity, severities};
-use super::schema::{FilletShape, Form, Gear, HubCondition, Model, Modification, ReliefShape, Solver, SpurPair};
+use super::schema::{
+    FilletShape, Form, Gear, HubCondition, Material, Mesh, Model, Modification, Numerics, ReliefShape, Solver, SpurPair,
+};
 use crate::case::document::Node;
 use crate::case::fault::Fault;
 
@@ -40,14 +42,13 @@ pub struct SpurPairCase {
 /// All faults that can be told together.
 pub fn resolve(mut inputs: SpurPair, document: &Node, folder: &Path) -> Result<SpurPairCase, Vec<Fault>> {
     let mut faults = Vec::new();
-    if inputs.pinion.form == Form::Internal {
+    if inputs.pinion.form == Some(Form::Internal) {
         faults.push(document.fault("pinion.form", "the pinion is external; give the ring as the gear"));
     }
-    let module = inputs.mesh.module_mm;
-    fill_defaults(&mut inputs.pinion, module);
-    fill_defaults(&mut inputs.gear, module);
+    fill_defaults(&mut inputs.pinion, &inputs.mesh, Form::External);
+    fill_defaults(&mut inputs.gear, &inputs.mesh, Form::External);
     let specs = [("pinion", &inputs.pinion), ("gear", &inputs.gear)]
-        .map(|(name, gear)| spec(name, gear, &inputs, document, folder, &mut faults));
+        .map(|(name, gear)| spec(name, gear, &inputs.mesh, document, folder, &mut faults));
     let options = options(&inputs, document, &mut faults);
     let mesh_cycles = mesh_cycles(&inputs, document, &mut faults);
     let map_torques = map_torques(&inputs, document, &mut faults);
@@ -77,13 +78,15 @@ pub fn resolve(mut inputs: SpurPair, document: &Node, folder: &Path) -> Result<S
     }
 }
 
-/// Spells out the defaults that depend on other keys.
-fn fill_defaults(gear: &mut Gear, module: f64) {
+/// Spells out the defaults that depend on other keys; `form` is that of a gear that does not say.
+pub(in crate::case) fn fill_defaults(gear: &mut Gear, mesh: &Mesh, form: Form) {
+    let module = mesh.module_mm;
+    let form = *gear.form.get_or_insert(form);
     gear.tip_round_mm.get_or_insert(0.02 * module);
     if gear.tooth_thickness_mm.is_none() {
         gear.profile_shift.get_or_insert(0.0);
     }
-    let natural = if gear.form == Form::External { FilletShape::Rack } else { FilletShape::Shaper };
+    let natural = if form == Form::External { FilletShape::Rack } else { FilletShape::Shaper };
     let fillet = &mut gear.fillet;
     let shape = *fillet.shape.get_or_insert(natural);
     fillet.radius_mm.get_or_insert(if shape == FilletShape::Shaper { 0.2 } else { 0.38 } * module);
@@ -93,10 +96,11 @@ fn fill_defaults(gear: &mut Gear, module: f64) {
     }
 }
 
-fn spec(
+/// A gear in SI units.
+pub(in crate::case) fn spec(
     name: &str,
     gear: &Gear,
-    inputs: &SpurPair,
+    mesh: &Mesh,
     document: &Node,
     folder: &Path,
     faults: &mut Vec<Fault>,
@@ -105,10 +109,7 @@ fn spec(
         let message = "give either tooth_thickness_mm or profile_shift, not both";
         faults.push(document.fault(&format!("{name}.profile_shift"), message));
     }
-    let kind = match gear.form {
-        Form::External => GearKind::External,
-        Form::Internal => GearKind::Internal,
-    };
+    let kind = if gear.form == Some(Form::Internal) { GearKind::Internal } else { GearKind::External };
     let radius = gear.fillet.radius_mm.unwrap_or_default() * MM;
     let fillet = match gear.fillet.shape {
         Some(FilletShape::Circular) => FilletSpec::Circular { radius },
@@ -122,8 +123,8 @@ fn spec(
     let mut spec = GearSpec {
         kind,
         teeth: gear.teeth,
-        module: inputs.mesh.module_mm * MM,
-        pressure_angle: inputs.mesh.pressure_angle_deg.to_radians(),
+        module: mesh.module_mm * MM,
+        pressure_angle: mesh.pressure_angle_deg.to_radians(),
         thickness: match (gear.tooth_thickness_mm, gear.profile_shift) {
             (Some(thickness), _) => ToothThickness::AtReference(thickness * MM),
             (None, shift) => ToothThickness::ProfileShift(shift.unwrap_or_default()),
@@ -258,45 +259,65 @@ pub(super) fn read_deviation(file: &Path, base: f64) -> Result<MeasuredDeviation
 
 fn options(inputs: &SpurPair, document: &Node, faults: &mut Vec<Fault>) -> PairModelOptions {
     let numerics = &inputs.numerics;
-    let material = fecm::Material {
-        young_modulus: inputs.material.young_modulus_gpa * 1e9,
-        poisson_ratio: inputs.material.poisson_ratio,
-        density: inputs.material.density_kg_per_m3,
-    };
-    let mesh = MeshDensity { order: numerics.element_order as usize, density: numerics.mesh_density };
-    let mut member = |name: &str, gear: &Gear| {
-        let bore = match (gear.hub.condition, gear.hub.stiffness_n_per_mm3) {
-            (HubCondition::Rigid, _) => BoreCondition::RigidHub,
-            (HubCondition::Tractions, _) => BoreCondition::Tractions,
-            (HubCondition::Elastic, Some(stiffness)) => BoreCondition::ElasticHub { stiffness: stiffness * 1e9 },
-            (HubCondition::Elastic, None) => {
-                let message = "this key is required with an elastic hub: spring stiffness per area";
-                faults.push(document.fault(&format!("{name}.hub.stiffness_n_per_mm3"), message));
-                BoreCondition::RigidHub
-            }
-        };
-        MemberOptions { material, mesh, bore }
-    };
+    let mut member =
+        |name: &str, gear: &Gear| member_options((name, gear), &inputs.material, numerics, document, faults);
     PairModelOptions {
         damage: [Vec::new(), Vec::new()],
         pinion: member("pinion", &inputs.pinion),
         wheel: member("gear", &inputs.gear),
-        face: match inputs.analysis.model {
-            Model::Solid => FaceModel::Solid { order: numerics.face_order as usize },
-            Model::PlaneStress => FaceModel::PlaneStress,
-            Model::PlaneStrain => FaceModel::PlaneStrain,
-        },
-        contact: ContactOptions {
-            cells_per_half_width: numerics.cells_per_half_width,
-            face_cells: numerics.face_cells as usize,
-            matching_depth: numerics.matching_depth_modules,
-            edge_correction: numerics.edge_correction,
-            slope_step: 0.01 * numerics.slope_step_percent,
-            crack_face_contact: numerics.crack_face_contact,
-            solver: match numerics.solver {
-                Solver::ActiveSet => SolverKind::ActiveSet,
-                Solver::Lemke => SolverKind::Lemke,
-            },
+        face: face_model(inputs.analysis.model, numerics),
+        contact: contact_options(numerics),
+    }
+}
+
+/// Material, mesh and hub of a gear.
+pub(in crate::case) fn member_options(
+    (name, gear): (&str, &Gear),
+    material: &Material,
+    numerics: &Numerics,
+    document: &Node,
+    faults: &mut Vec<Fault>,
+) -> MemberOptions {
+    let bore = match (gear.hub.condition, gear.hub.stiffness_n_per_mm3) {
+        (HubCondition::Rigid, _) => BoreCondition::RigidHub,
+        (HubCondition::Tractions, _) => BoreCondition::Tractions,
+        (HubCondition::Elastic, Some(stiffness)) => BoreCondition::ElasticHub { stiffness: stiffness * 1e9 },
+        (HubCondition::Elastic, None) => {
+            let message = "this key is required with an elastic hub: spring stiffness per area";
+            faults.push(document.fault(&format!("{name}.hub.stiffness_n_per_mm3"), message));
+            BoreCondition::RigidHub
+        }
+    };
+    let material = fecm::Material {
+        young_modulus: material.young_modulus_gpa * 1e9,
+        poisson_ratio: material.poisson_ratio,
+        density: material.density_kg_per_m3,
+    };
+    let mesh = MeshDensity { order: numerics.element_order as usize, density: numerics.mesh_density };
+    MemberOptions { material, mesh, bore }
+}
+
+/// Model along the face.
+pub(in crate::case) fn face_model(model: Model, numerics: &Numerics) -> FaceModel {
+    match model {
+        Model::Solid => FaceModel::Solid { order: numerics.face_order as usize },
+        Model::PlaneStress => FaceModel::PlaneStress,
+        Model::PlaneStrain => FaceModel::PlaneStrain,
+    }
+}
+
+/// Contact grid and solver.
+pub(in crate::case) fn contact_options(numerics: &Numerics) -> ContactOptions {
+    ContactOptions {
+        cells_per_half_width: numerics.cells_per_half_width,
+        face_cells: numerics.face_cells as usize,
+        matching_depth: numerics.matching_depth_modules,
+        edge_correction: numerics.edge_correction,
+        slope_step: 0.01 * numerics.slope_step_percent,
+        crack_face_contact: numerics.crack_face_contact,
+        solver: match numerics.solver {
+            Solver::ActiveSet => SolverKind::ActiveSet,
+            Solver::Lemke => SolverKind::Lemke,
         },
     }
 }
@@ -335,7 +356,7 @@ fn map_torques(inputs: &SpurPair, document: &Node, faults: &mut Vec<Fault>) -> V
 }
 
 /// A geometry error at the key it comes from.
-fn geometry_fault(document: &Node, member: Option<&str>, error: &GeometryError) -> Fault {
+pub(in crate::case) fn geometry_fault(document: &Node, member: Option<&str>, error: &GeometryError) -> Fault {
     let key = match error.parameter() {
         "tip_radius" => "tip_diameter_mm",
         "root_radius" => "root_diameter_mm",

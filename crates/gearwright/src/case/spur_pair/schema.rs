@@ -68,9 +68,9 @@ pub struct Mesh {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Gear {
-    /// Whether teeth point outward ("external") or inward ("internal", a ring; the gear only).
-    #[serde(default)]
-    pub form: Form,
+    /// Whether teeth point outward ("external") or inward ("internal", a ring). Default: outward, those of a `ring` inward.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub form: Option<Form>,
     /// Number of teeth.
     #[schemars(range(min = 6, max = 2000))]
     pub teeth: u32,

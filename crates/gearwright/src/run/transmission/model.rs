@@ -1,0 +1,256 @@
+//! The transmission of a state as the engine takes it: train, bodies, bearings, meshes.
+
+use std::sync::Arc;
+
+use gear_geom::MeshSite;
+use nalgebra::Vector3;
+use planetary::elastic::ElasticBody;
+use planetary::engine::{
+    Anchor, Bearing, BevelStage, BodyId, CoastFlank, Mesh, Planet, PlanetaryStage, RigidBody, TransmissionSpec,
+};
+use planetary::mesh::MeshLaw;
+
+use crate::case::TransmissionCase;
+use crate::case::transmission::bevel;
+use crate::case::transmission::resolve::BodyValues;
+use crate::case::transmission::schema::Supported;
+
+const MM: f64 = 1e-3;
+const STANDING: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// Force, as a part of the mean, from which on the damping of a mesh is full.
+const FULL_DAMPING: f64 = 0.01;
+/// Positions at which the mean stiffness of a mesh is taken.
+const POSITIONS: usize = 16;
+
+/// Laws of the meshes of a state, of drive and of coast flanks.
+#[derive(Debug, Clone)]
+pub struct Laws {
+    /// Sun with each planet.
+    pub sun: Vec<Arc<dyn MeshLaw>>,
+    /// Ring with each planet.
+    pub ring: Vec<Arc<dyn MeshLaw>>,
+    /// Coast flanks of sun and planets, and of planets and ring: those of sound teeth.
+    pub coast: [Arc<dyn MeshLaw>; 2],
+    /// Bevel mesh.
+    pub bevel: Option<Arc<dyn MeshLaw>>,
+}
+
+/// Mean force of one mesh of the planetary stage (N).
+#[must_use]
+pub fn mean_force(case: &TransmissionCase) -> f64 {
+    let spec = case.train.spec();
+    let [z_s, z_r] = [&spec.sun, &spec.ring].map(|gear| f64::from(gear.teeth()));
+    // T_s = T_c Z_s / (Z_s + Z_r), shared by the planets; the ring's force is the same by the planet's balance
+    let sun_torque = case.inputs.run.torque_n_m * z_s / (z_s + z_r);
+    sun_torque / spec.sun.base_radius() / case.train.planets() as f64
+}
+
+/// The transmission of a state.
+///
+/// # Errors
+/// A planet that the train does not have (it has been checked).
+pub fn spec(case: &TransmissionCase, laws: &Laws, housing: Option<ElasticBody>) -> anyhow::Result<TransmissionSpec> {
+    let train = &case.train;
+    let gears = train.spec();
+    let [z_s, z_p, z_r] = [&gears.sun, &gears.planet, &gears.ring].map(|gear| f64::from(gear.teeth()));
+    let force = mean_force(case);
+    let pairs = MeshSite::ALL.map(|site| train.pair(site));
+    let damping = |law: &dyn MeshLaw| case.inputs.numerics.mesh_damping_s * mean_stiffness(law, force);
+    let dampings = [damping(laws.coast[0].as_ref()), damping(laws.coast[1].as_ref())];
+    let mesh = |site: MeshSite, planet: usize| -> anyhow::Result<Mesh> {
+        let (index, own) = match site {
+            MeshSite::SunPlanet => (0, &laws.sun),
+            MeshSite::PlanetRing => (1, &laws.ring),
+        };
+        let offset = train.mesh_offset(site, planet)?;
+        Ok(Mesh {
+            law: own.get(planet).unwrap_or(&laws.coast[index]).clone(),
+            cycle_offset: offset,
+            damping: dampings[index],
+            damping_force: (FULL_DAMPING * force).max(f64::MIN_POSITIVE),
+            coast: Some(CoastFlank {
+                law: laws.coast[index].clone(),
+                cycle_offset: pairs[index].coast_cycle(offset),
+                backlash: pairs[index].normal_backlash().max(0.0),
+            }),
+        })
+    };
+    let own = case.inputs.bearing.iter().find(|bearing| bearing.on == Supported::Planet);
+    let [radial, axial, tilt, per] = own.map_or([0.0; 4], |b| {
+        [b.radial_stiffness_n_per_m, b.axial_stiffness_n_per_m, b.tilt_stiffness_n_m_per_rad, b.damping_s]
+    });
+    let bearing_stiffness = [radial, radial, axial, tilt, tilt];
+    let planets = gears.planet_angles.iter().enumerate().map(|(index, &angle)| {
+        Ok(Planet {
+            angle,
+            mass: case.bodies.planet.mass,
+            polar: case.bodies.planet.polar,
+            transverse: case.bodies.planet.transverse,
+            spin_ratio: 1.0 - z_r / z_p,
+            bearing_stiffness,
+            bearing_damping: bearing_stiffness.map(|k| per * k),
+            sun_mesh: mesh(MeshSite::SunPlanet, index)?,
+            ring_mesh: mesh(MeshSite::PlanetRing, index)?,
+        })
+    });
+    let stage = PlanetaryStage {
+        ring_teeth: gears.ring.teeth(),
+        centre_distance: gears.centre_distance,
+        height: 0.0,
+        sun_base_radius: gears.sun.base_radius(),
+        planet_base_radius: gears.planet.base_radius(),
+        ring_base_radius: gears.ring.base_radius(),
+        sun_pressure_angle: pairs[0].working_pressure_angle(),
+        ring_pressure_angle: pairs[1].working_pressure_angle(),
+        planets: planets.collect::<anyhow::Result<_>>()?,
+    };
+    Ok(TransmissionSpec {
+        stage,
+        sun: on_main_axis(&case.bodies.sun, (z_s + z_r) / z_s),
+        carrier: on_main_axis(&case.bodies.carrier, 1.0),
+        bearings: bearings(case),
+        housing,
+        drive: Some(if case.bevel.is_some() { BodyId::BevelPinion } else { BodyId::Sun }),
+        bevel: case.bevel.as_ref().zip(laws.bevel.as_ref()).map(|(stage, law)| bevel_stage(case, stage, law)),
+    })
+}
+
+/// Mean force of the bevel mesh along its normal (N).
+#[must_use]
+pub fn bevel_force(case: &TransmissionCase, stage: &bevel::BevelStage) -> f64 {
+    let spec = case.train.spec();
+    let [z_s, z_r] = [&spec.sun, &spec.ring].map(|gear| f64::from(gear.teeth()));
+    case.inputs.run.torque_n_m * z_s / (z_s + z_r) / stage.line.arms[1].abs()
+}
+
+fn bevel_stage(case: &TransmissionCase, stage: &bevel::BevelStage, law: &Arc<dyn MeshLaw>) -> BevelStage {
+    let speeds = &case.speeds;
+    let line = &stage.line;
+    let axis: [f64; 3] = line.pinion_axis.into_inner().into();
+    let place = stage.pinion.centre;
+    let force = bevel_force(case, stage);
+    // teeth that pass in a turn of the carrier; the mesh stands with the housing
+    let cycles_per_turn = f64::from(stage.pair.spec().teeth[1]) * speeds.sun / speeds.carrier;
+    let pinion = RigidBody {
+        position: std::array::from_fn(|k| stage.apex[k] + place * axis[k]),
+        axis,
+        mass: stage.pinion.mass,
+        polar: stage.pinion.polar,
+        transverse: stage.pinion.transverse,
+        // the torque on the pinion is against its sense
+        spin_ratio: -line.arms[0].signum() * cycles_per_turn / f64::from(stage.pair.spec().teeth[0]),
+    };
+    BevelStage {
+        pinion,
+        gear: stage.gear.map(|gear| on_main_axis(&gear, speeds.sun / speeds.carrier)),
+        mesh: Mesh {
+            law: law.clone(),
+            cycle_offset: 0.0,
+            damping: case.inputs.numerics.mesh_damping_s * mean_stiffness(law.as_ref(), force),
+            damping_force: (FULL_DAMPING * force).max(f64::MIN_POSITIVE),
+            coast: None,
+        },
+        point: line.point.coords.into(),
+        normal: line.normal.into_inner().into(),
+        cycles_per_turn,
+    }
+}
+
+fn on_main_axis(body: &BodyValues, spin_ratio: f64) -> RigidBody {
+    RigidBody {
+        position: [0.0, 0.0, body.centre],
+        axis: [0.0, 0.0, 1.0],
+        mass: body.mass,
+        polar: body.polar,
+        transverse: body.transverse,
+        spin_ratio,
+    }
+}
+
+/// Bearings but those of the planets, named by body and number, and the spline.
+fn bearings(case: &TransmissionCase) -> Vec<Bearing> {
+    let pinion_axis = case.bevel.as_ref().map(|stage| stage.line.pinion_axis.into_inner());
+    let mut counts = [0_usize; 5];
+    let made = case.inputs.bearing.iter().filter_map(|bearing| {
+        let body = body_of(bearing.on)?;
+        let count = &mut counts[bearing.on as usize];
+        *count += 1;
+        let (kr, kz, kt) =
+            (bearing.radial_stiffness_n_per_m, bearing.axial_stiffness_n_per_m, bearing.tilt_stiffness_n_m_per_rad);
+        let stiffness = [kr, kr, kz, kt, kt, 0.0];
+        let along = bearing.place_mm * MM;
+        let (position, axes) = match (pinion_axis.filter(|_| body == BodyId::BevelPinion), &case.bevel) {
+            (Some(axis), Some(stage)) => (std::array::from_fn(|k| stage.apex[k] + along * axis[k]), about(axis)),
+            _ => ([0.0, 0.0, along], STANDING),
+        };
+        Some(Bearing {
+            name: format!("{body} {count}"),
+            body,
+            anchor: bearing.port.clone().map_or(Anchor::Ground, Anchor::Port),
+            position,
+            axes,
+            stiffness,
+            damping: stiffness.map(|k| bearing.damping_s * k),
+        })
+    });
+    let spline = case.inputs.bevel.as_ref().and_then(|bevel| bevel.spline).map(|spline| {
+        let (kr, kz, kt) =
+            (spline.radial_stiffness_n_per_m, spline.axial_stiffness_n_per_m, spline.tilt_stiffness_n_m_per_rad);
+        let stiffness = [kr, kr, kz, kt, kt, spline.torsional_stiffness_n_m_per_rad];
+        Bearing {
+            name: "spline".into(),
+            body: BodyId::BevelGear,
+            anchor: Anchor::Body(BodyId::Sun),
+            position: [0.0, 0.0, spline.place_mm * MM],
+            axes: STANDING,
+            stiffness,
+            damping: stiffness.map(|k| spline.damping_s * k),
+        }
+    });
+    made.chain(spline).collect()
+}
+
+/// Orthonormal axes of which the third is this one.
+fn about(axis: Vector3<f64>) -> [[f64; 3]; 3] {
+    let level = Vector3::z().cross(&axis);
+    // an axis along z has any level direction beside it
+    let first = if level.norm() > 1e-9 { level.normalize() } else { Vector3::x() };
+    [first.into(), axis.cross(&first).into(), axis.into()]
+}
+
+fn body_of(on: Supported) -> Option<BodyId> {
+    match on {
+        Supported::Sun => Some(BodyId::Sun),
+        Supported::Carrier => Some(BodyId::Carrier),
+        Supported::BevelPinion => Some(BodyId::BevelPinion),
+        Supported::BevelGear => Some(BodyId::BevelGear),
+        Supported::Planet => None,
+    }
+}
+
+/// Mean over a cycle of the stiffness of a mesh at a force (N/m).
+#[must_use]
+pub fn mean_stiffness(law: &dyn MeshLaw, force: f64) -> f64 {
+    let at = |cycle: f64| law.response(cycle, approach_at(law, cycle, force)).stiffness;
+    (0..POSITIONS).map(|k| at(k as f64 / POSITIONS as f64)).sum::<f64>() / POSITIONS as f64
+}
+
+/// Approach (m) at which a mesh carries a force, by doubling and bisection.
+#[must_use]
+pub fn approach_at(law: &dyn MeshLaw, cycle: f64, force: f64) -> f64 {
+    let carries = |approach: f64| law.response(cycle, approach).force >= force;
+    let mut high = 1e-7;
+    while !carries(high) && high < 1.0 {
+        high *= 2.0;
+    }
+    // teeth in the way of rigid involutes touch before the approach is 0
+    let mut low = -high;
+    while carries(low) && low > -1.0 {
+        low *= 2.0;
+    }
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        *(if carries(middle) { &mut high } else { &mut low }) = middle;
+    }
+    high
+}
