@@ -170,6 +170,11 @@ fn invariant_what_cannot_rest_is_an_error() {
     let mut aside = train(&equal(3, 0.0), 0.0);
     aside.sun.position[0] = 1e-3;
     assert!(matches!(Transmission::new(&aside), Err(PlanetaryError::Value { .. })));
+    // a housing in mm
+    let mut large = train(&equal(3, 0.0), 0.0);
+    large.housing = Some(rigid_ring(150.0, [2e9, 20.0], [5e7, 0.3], 0.05));
+    let answer = Transmission::new(&large).map(|_| ()).unwrap_err().to_string();
+    assert!(answer.contains("same unit of length"), "{answer}");
     assert!(matches!(Transmission::new(&heavy), Err(PlanetaryError::Value { .. })));
     assert_eq!(mesh(5e8, 0.0, 0.0).law.response(0.0, -1e-9).force, 0.0);
 }

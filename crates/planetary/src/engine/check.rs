@@ -14,6 +14,9 @@ const FINITE: &str = "a finite number";
 const DIRECTION_TOLERANCE: f64 = 1e-6;
 /// How far the centres of sun and carrier, about which their connections turn, may be from the main axis (m).
 const ON_AXIS: f64 = 1e-9;
+/// Radius of the ring's seat over the ring's base radius; a housing in another unit of length is far from it.
+const SEAT_RATIO: std::ops::RangeInclusive<f64> = 0.25..=4.0;
+const SEAT: &str = "0.25 to 4: are housing and gears in the same unit of length?";
 const DIRECTION: &str = "unit vectors at right angles, to 1e-6";
 
 fn positive(what: impl Fn() -> String, value: f64) -> Checked {
@@ -195,6 +198,11 @@ impl TransmissionSpec {
         }
         if let Some(housing) = &self.housing {
             check_housing(housing)?;
+            if let Some(seat) = &housing.ring_seat {
+                let ratio = seat.radius / self.stage.ring_base_radius;
+                let what = || "radius of the ring seat over the ring's base radius".into();
+                PlanetaryError::check(SEAT_RATIO.contains(&ratio), what, ratio, SEAT)?;
+            }
         }
         self.bearings.iter().try_for_each(|bearing| bearing.check(self))?;
         match self.drive {
