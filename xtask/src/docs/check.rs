@@ -61,6 +61,8 @@ fn commands(block: &Block, root: &Path, found: &mut Vec<(usize, String)>) {
 fn command_fault(command: &str, root: &Path) -> Option<String> {
     let words: Vec<&str> = command.split_whitespace().take_while(|word| *word != ">").collect();
     let parsed = |words: &[&str], result: Result<(), clap::Error>| match result {
+        // a command named without what it works on
+        Err(error) if error.kind() == clap::error::ErrorKind::MissingRequiredArgument && words.len() == 2 => None,
         Err(error) if error.use_stderr() && words.len() > 1 => {
             Some(format!("`{command}`: {}", error.to_string().lines().next().unwrap_or_default()))
         }
