@@ -19,7 +19,7 @@ pub fn faults(page: &Page, root: &Path) -> Vec<Fault> {
     for block in &page.blocks {
         match block.language.as_str() {
             "sh" | "console" => commands(block, root, &mut found),
-            "toml" => found.extend(toml_fault(&block.text).map(|message| (block.line, message))),
+            "toml" => found.extend(toml_fault(&block.text, root).map(|message| (block.line, message))),
             "rust" => {
                 let name = format!("{:?}", format!("../../{}", page.source.display()));
                 if !std::fs::read_to_string(root.join(DOCTESTS)).is_ok_and(|text| text.contains(&name)) {
@@ -116,13 +116,13 @@ fn alternatives(path: &str) -> Vec<String> {
     inside.split(',').map(|part| format!("{before}{part}{after}")).collect()
 }
 
-/// What is wrong with a case file, or with a piece of one put into the example of some kind.
-fn toml_fault(text: &str) -> Option<String> {
+/// What is wrong with a case file, or with a piece of one put into the example of some kind; files that it names are those beside the case files.
+fn toml_fault(text: &str, root: &Path) -> Option<String> {
     let piece: toml::Table = match text.parse() {
         Ok(table) => table,
         Err(error) => return Some(error.to_string()),
     };
-    let file = Path::new("case.toml");
+    let file = &root.join("configs/case.toml");
     if piece.contains_key("kind") {
         return case::from_text(text, file).err().map(|faults| faults.to_string());
     }
@@ -173,7 +173,7 @@ mod tests {
                     ```toml\n[mesh]\nmodule_mm = 3.0\ncentre_distance_mm = 75.05\n```\n";
         let left: Vec<_> = messages(text).into_iter().filter(|m| !m.contains("case")).collect();
         assert!(left.is_empty(), "{left:?}");
-        assert_eq!(toml_fault("[analysis]\npositions_per_cycle = 20\n"), None);
+        assert_eq!(toml_fault("[analysis]\npositions_per_cycle = 20\n", root()), None);
     }
 
     #[test]
