@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use gearwright::plot::drawing::Drawing;
-use gearwright::plot::{Chart, FlankMap, Line, Mark, MarkedChart, Pattern};
+use gearwright::plot::{Chart, FlankMap, Line, Mark, MarkedChart, Pattern, PolarChart};
 use serde::{Deserialize, Serialize};
 
 use super::registry::Figure;
@@ -17,6 +17,8 @@ pub enum Picture {
     Map(FlankMap),
     /// A drawing to scale.
     Drawing(Drawing),
+    /// Closed lines about the housing.
+    Polar(PolarChart),
 }
 
 impl Picture {
@@ -26,20 +28,24 @@ impl Picture {
             Self::Chart(chart) => chart.save(folder, name),
             Self::Map(map) => map.save(folder, name),
             Self::Drawing(drawing) => drawing.save(folder, name),
+            Self::Polar(chart) => chart.save(folder, name),
         }
     }
 
     /// The data as rows of a table: line, abscissa, ordinate.
     pub fn rows(&self) -> Option<Table> {
-        let Self::Chart(MarkedChart { chart, .. }) = self else { return None };
+        let (lines, head) = match self {
+            Self::Chart(MarkedChart { chart, .. }) => (&chart.lines, ["line", &chart.x_label, &chart.y_label]),
+            Self::Polar(chart) => (&chart.lines, ["line", "angle (deg)", "radius"]),
+            _ => return None,
+        };
         let mut rows = Vec::new();
-        for line in &chart.lines {
+        for line in lines {
             rows.extend(
                 line.points.iter().map(|(x, y)| vec![line.name.clone(), format!("{x:.9e}"), format!("{y:.9e}")]),
             );
         }
-        let head = ["line", &chart.x_label, &chart.y_label].map(String::from).to_vec();
-        Some(Table { head, rows })
+        Some(Table { head: head.map(String::from).to_vec(), rows })
     }
 }
 
@@ -201,8 +207,8 @@ pub enum Outcome {
     Drawn(Saved),
     /// The error.
     Failed(String),
-    /// Why there is none.
-    Missing(String),
+    /// Not computed, as others were asked for.
+    NotAsked,
 }
 
 /// A figure and its outcome.

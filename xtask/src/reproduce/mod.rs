@@ -16,6 +16,7 @@ mod report;
 mod scan;
 mod statics;
 mod store;
+mod vibration;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -26,7 +27,7 @@ use anyhow::{Context as _, bail};
 use context::Context;
 use drawn::{Done, Outcome};
 use printed::Printed;
-use registry::{FIGURES, Figure, Work};
+use registry::{FIGURES, Figure};
 use store::Store;
 
 /// How fine.
@@ -117,10 +118,10 @@ pub fn run(options: &Options) -> anyhow::Result<()> {
     }
     let count = |pick: fn(&Outcome) -> bool| all.iter().filter(|d| pick(&d.outcome)).count();
     println!(
-        "{} drawn, {} failed, {} missing; {seconds:.0} s",
+        "{} drawn, {} failed, {} not asked for; {seconds:.0} s",
         count(|o| matches!(o, Outcome::Drawn(_))),
         count(|o| matches!(o, Outcome::Failed(_))),
-        count(|o| matches!(o, Outcome::Missing(_)))
+        count(|o| matches!(o, Outcome::NotAsked))
     );
     println!("written: {}", page.display());
     Ok(())
@@ -132,10 +133,6 @@ fn is_named(figure: &Figure, only: &[String]) -> bool {
 
 /// A figure's outcome: kept, computed or failed. Errors are those of the results folder alone.
 fn outcome(figure: &'static Figure, chosen: bool, store: &Store, context: &Context) -> anyhow::Result<Outcome> {
-    let compute = match figure.work {
-        Work::Compute(compute) => compute,
-        Work::Missing(reason) => return Ok(Outcome::Missing(reason.into())),
-    };
     let key = match context.key(figure.cases) {
         Ok(key) => key,
         Err(error) => return Ok(Outcome::Failed(format!("{error:#}"))),
@@ -144,12 +141,12 @@ fn outcome(figure: &'static Figure, chosen: bool, store: &Store, context: &Conte
         return Ok(Outcome::Drawn(kept));
     }
     if !chosen {
-        return Ok(Outcome::Missing("not computed: another one was asked for with --only".into()));
+        return Ok(Outcome::NotAsked);
     }
     print!("{:6} {} ... ", figure.id, figure.title);
     std::io::Write::flush(&mut std::io::stdout())?;
     let clock = Instant::now();
-    let made = catch_unwind(AssertUnwindSafe(|| compute(context)))
+    let made = catch_unwind(AssertUnwindSafe(|| (figure.compute)(context)))
         .unwrap_or_else(|_| bail!("the computation panicked; its message stands above"));
     match made {
         Ok(mut drawn) => {

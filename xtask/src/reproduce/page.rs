@@ -80,7 +80,7 @@ fn head(page: &mut String, all: &[Done], printed: &Printed, level: Level) -> any
         let style = match done.outcome {
             Outcome::Drawn(_) => "",
             Outcome::Failed(_) => " class=\"differs\"",
-            Outcome::Missing(_) => " class=\"none\"",
+            Outcome::NotAsked => " class=\"none\"",
         };
         writeln!(page, "<a{style} href=\"#f{}\">{}</a>", done.figure.id, name(done.figure.id))?;
     }
@@ -151,7 +151,7 @@ fn figure(page: &mut String, folder: &Path, done: &Done, printed: &Printed) -> a
         escaped(figure.about)
     )?;
     match &done.outcome {
-        Outcome::Missing(reason) => writeln!(page, "<p class=\"missing\">Missing: {}.</p>", escaped(reason))?,
+        Outcome::NotAsked => page.push_str("<p class=\"missing\">Not computed: others were asked for with --only.</p>\n"),
         Outcome::Failed(error) => writeln!(page, "<p class=\"failed\">Failed: {}</p>", escaped(error))?,
         Outcome::Drawn(saved) => content(page, folder, saved)?,
     }

@@ -210,7 +210,7 @@ impl Printed {
         let saved = match outcome {
             Outcome::Drawn(saved) => saved,
             Outcome::Failed(error) => return none(format!("the figure failed: {error}")),
-            Outcome::Missing(reason) => return none(reason.clone()),
+            Outcome::NotAsked => return none("not computed: others were asked for with --only".into()),
         };
         let computed = saved.values.get(&number.key).copied().filter(|v| v.is_finite());
         let verdict = match (&number.not_comparable, computed) {

@@ -2,18 +2,11 @@
 
 use super::context::Context;
 use super::drawn::Drawn;
-use super::figures::{chapter2, chapter3, chapter4, kinematics, lumped, scheme};
+use super::figures::{chapter2, chapter3, chapter4, kinematics, lumped, scheme, transmission};
 
-/// Why there are no figures of the transmission.
-const PLANETARY: &str = "needs the planetary transmission, which this program does not have yet";
-
-/// How a figure is made.
-pub enum Work {
-    /// By this function.
-    Compute(fn(&Context) -> anyhow::Result<Drawn>),
-    /// Not at all, for this reason.
-    Missing(&'static str),
-}
+const RING_CRACK: &[&str] = &[transmission::RING];
+const RING_PLACES: &[&str] = &[transmission::RING, transmission::ELSEWHERE[0], transmission::ELSEWHERE[1]];
+const SUN_CRACK: &[&str] = &[transmission::SUN];
 
 /// A figure or table.
 pub struct Figure {
@@ -25,8 +18,8 @@ pub struct Figure {
     pub about: &'static str,
     /// Case files in `configs/` that it is computed from.
     pub cases: &'static [&'static str],
-    /// How it is made.
-    pub work: Work,
+    /// Computes it.
+    pub compute: fn(&Context) -> anyhow::Result<Drawn>,
 }
 
 const fn computed(
@@ -36,11 +29,7 @@ const fn computed(
     cases: &'static [&'static str],
     compute: fn(&Context) -> anyhow::Result<Drawn>,
 ) -> Figure {
-    Figure { id, title, about, cases, work: Work::Compute(compute) }
-}
-
-const fn missing(id: &'static str, title: &'static str, about: &'static str, reason: &'static str) -> Figure {
-    Figure { id, title, about, cases: &[], work: Work::Missing(reason) }
+    Figure { id, title, about, cases, compute }
 }
 
 /// All of them.
@@ -354,7 +343,13 @@ pub const FIGURES: &[Figure] = &[
         &[],
         chapter4::sensitivity,
     ),
-    missing("5.1", "Model of the rotorcraft transmission", "Gears, housing and sensors.", PLANETARY),
+    computed(
+        "5.1",
+        "Model of the rotorcraft transmission",
+        "Gears, housing, sensors and the damaged ring tooth, to scale.",
+        RING_CRACK,
+        transmission::model::ring,
+    ),
     computed(
         "T5.1",
         "Frequencies of the rotorcraft transmission",
@@ -362,24 +357,132 @@ pub const FIGURES: &[Figure] = &[
         &[],
         kinematics::planetary,
     ),
-    missing("5.2", "Housing accelerations, healthy", "Rotorcraft transmission.", PLANETARY),
-    missing("5.3", "Their spectra", "Rotorcraft transmission.", PLANETARY),
-    missing("5.4", "Three carrier rotations, healthy", "Rotorcraft transmission.", PLANETARY),
-    missing("5.5", "Housing accelerations with a cracked ring tooth", "Rotorcraft transmission.", PLANETARY),
-    missing("5.6", "Exact difference signals", "Rotorcraft transmission.", PLANETARY),
-    missing("5.7", "Approximate difference signals", "Rotorcraft transmission.", PLANETARY),
-    missing("T5.2", "FM4 of approximate and exact difference signals", "Rotorcraft transmission.", PLANETARY),
-    missing("5.8", "Difference signals with more sidebands removed", "Rotorcraft transmission.", PLANETARY),
-    missing("5.9", "FM4 around the housing", "Rotorcraft transmission.", PLANETARY),
-    missing("5.10", "FM4 around the housing by place of the damaged tooth", "Rotorcraft transmission.", PLANETARY),
-    missing("6.1", "Model of the transmission with a damaged sun tooth", "Rotorcraft transmission.", PLANETARY),
-    missing("6.2", "Housing accelerations, healthy", "Rotorcraft transmission.", PLANETARY),
-    missing("6.3", "Their spectra", "Rotorcraft transmission.", PLANETARY),
-    missing("6.4", "Housing accelerations with a cracked sun tooth", "Rotorcraft transmission.", PLANETARY),
-    missing("6.5", "Approximate difference signals", "Rotorcraft transmission.", PLANETARY),
-    missing("6.6", "Exact difference signals", "Rotorcraft transmission.", PLANETARY),
-    missing("6.7", "FM4 by difference signal and average", "Rotorcraft transmission.", PLANETARY),
-    missing("6.8", "FM4 around the housing", "Rotorcraft transmission.", PLANETARY),
+    computed(
+        "5.2",
+        "Housing accelerations, healthy",
+        "Three turns of the carrier at the sensor near the input port.",
+        RING_CRACK,
+        transmission::healthy::accelerations,
+    ),
+    computed(
+        "5.3",
+        "Their spectra",
+        "Up to 10 kHz, and about two harmonics of the planetary mesh frequency.",
+        RING_CRACK,
+        transmission::healthy::spectra,
+    ),
+    computed(
+        "5.4",
+        "Three carrier rotations, healthy",
+        "Accelerations and spectrum beside the ring tooth to be damaged.",
+        RING_CRACK,
+        transmission::healthy::near_the_tooth,
+    ),
+    computed(
+        "5.5",
+        "Housing accelerations with a cracked ring tooth",
+        "Three turns, and close to the engagement of the damaged tooth.",
+        RING_CRACK,
+        transmission::ring::accelerations,
+    ),
+    computed(
+        "5.6",
+        "Exact difference signals",
+        "Damaged minus healthy planet-pass averages, and their spectra.",
+        RING_CRACK,
+        transmission::ring::exact_differences,
+    ),
+    computed(
+        "5.7",
+        "Approximate difference signals",
+        "Planet-pass averages without mesh harmonics and first sidebands.",
+        RING_CRACK,
+        transmission::ring::approximate_differences,
+    ),
+    computed(
+        "T5.2",
+        "FM4 of approximate and exact difference signals",
+        "Sensor beside the damaged ring tooth.",
+        RING_CRACK,
+        transmission::ring::fm4_table,
+    ),
+    computed(
+        "5.8",
+        "Difference signals with more sidebands removed",
+        "Three and five pairs, and FM4 over their number.",
+        RING_CRACK,
+        transmission::ring::more_sidebands,
+    ),
+    computed(
+        "5.9",
+        "FM4 around the housing",
+        "Exact and approximate difference signals, by crack length.",
+        RING_CRACK,
+        transmission::ring::around_the_housing,
+    ),
+    computed(
+        "5.10",
+        "FM4 around the housing by place of the damaged tooth",
+        "Three ring teeth a planet angle apart.",
+        RING_PLACES,
+        transmission::ring::elsewhere,
+    ),
+    computed(
+        "6.1",
+        "Model of the transmission with a damaged sun tooth",
+        "Top view with the sensor; the sun and its damaged tooth.",
+        SUN_CRACK,
+        transmission::model::sun,
+    ),
+    computed(
+        "6.2",
+        "Housing accelerations, healthy",
+        "Three turns, one planet pass, one turn.",
+        SUN_CRACK,
+        transmission::healthy::stretches,
+    ),
+    computed(
+        "6.3",
+        "Their spectra",
+        "Up to 10 kHz, and about mesh frequencies of both stages.",
+        SUN_CRACK,
+        transmission::healthy::stage_spectra,
+    ),
+    computed(
+        "6.4",
+        "Housing accelerations with a cracked sun tooth",
+        "Three turns, and one engagement of the damaged tooth.",
+        SUN_CRACK,
+        transmission::sun::accelerations,
+    ),
+    computed(
+        "6.5",
+        "Approximate difference signals",
+        "Of planet-pass and carrier averages.",
+        SUN_CRACK,
+        transmission::sun::approximate_differences,
+    ),
+    computed(
+        "6.6",
+        "Exact difference signals",
+        "Of both averages and of the unaltered accelerations.",
+        SUN_CRACK,
+        transmission::sun::exact_differences,
+    ),
+    computed(
+        "6.7",
+        "FM4 by difference signal and average",
+        "Over crack length.",
+        SUN_CRACK,
+        transmission::sun::fm4,
+    ),
+    computed(
+        "6.8",
+        "FM4 around the housing",
+        "Unaltered and carrier-averaged exact difference signals.",
+        SUN_CRACK,
+        transmission::sun::around_the_housing,
+    ),
     computed(
         "7.1",
         "Models of the nonunity pair",
@@ -437,19 +540,74 @@ pub const FIGURES: &[Figure] = &[
         &["lumped-900hz.toml"],
         lumped::damage_speeds,
     ),
-    missing("A.1", "RMS, cracked ring tooth", "Rotorcraft transmission.", PLANETARY),
-    missing("A.2", "Crest factor, cracked ring tooth", "Rotorcraft transmission.", PLANETARY),
-    missing("A.3", "Kurtosis, cracked ring tooth", "Rotorcraft transmission.", PLANETARY),
-    missing("A.4", "Energy operator, cracked ring tooth", "Rotorcraft transmission.", PLANETARY),
-    missing("A.5", "RMS and kurtosis by number of averages", "Rotorcraft transmission.", PLANETARY),
-    missing("A.6", "RMS of the difference signal, cracked ring tooth", "Rotorcraft transmission.", PLANETARY),
-    missing("A.7", "M8A, cracked ring tooth", "Rotorcraft transmission.", PLANETARY),
-    missing(
+    computed(
+        "A.1",
+        "RMS, cracked ring tooth",
+        "Of accelerations and both averages, and its change.",
+        RING_CRACK,
+        transmission::indicators::rms_of_ring,
+    ),
+    computed(
+        "A.2",
+        "Crest factor, cracked ring tooth",
+        "Of accelerations and both averages, and its change.",
+        RING_CRACK,
+        transmission::indicators::crest_of_ring,
+    ),
+    computed(
+        "A.3",
+        "Kurtosis, cracked ring tooth",
+        "Of accelerations and both averages, and its change.",
+        RING_CRACK,
+        transmission::indicators::kurtosis_of_ring,
+    ),
+    computed(
+        "A.4",
+        "Energy operator, cracked ring tooth",
+        "Of accelerations and both averages, and its change.",
+        RING_CRACK,
+        transmission::indicators::energy_of_ring,
+    ),
+    computed(
+        "A.5",
+        "RMS and kurtosis by number of averages",
+        "Over planet passes and carrier turns averaged.",
+        RING_CRACK,
+        transmission::indicators::averages_of_ring,
+    ),
+    computed(
+        "A.6",
+        "RMS of the difference signal, cracked ring tooth",
+        "Approximate difference signal of the planet-pass average.",
+        RING_CRACK,
+        transmission::indicators::difference_rms_of_ring,
+    ),
+    computed(
+        "A.7",
+        "M8A, cracked ring tooth",
+        "Approximate difference signal of the planet-pass average.",
+        RING_CRACK,
+        transmission::indicators::m8a_of_ring,
+    ),
+    computed(
         "B.1",
         "RMS, crest factor, kurtosis and energy operator, cracked sun tooth",
-        "Rotorcraft transmission.",
-        PLANETARY,
+        "Of accelerations and both averages.",
+        SUN_CRACK,
+        transmission::indicators::accelerations_of_sun,
     ),
-    missing("B.2", "Indicators of difference signals, cracked sun tooth", "Rotorcraft transmission.", PLANETARY),
-    missing("B.3", "Indicators of exact difference signals, cracked sun tooth", "Rotorcraft transmission.", PLANETARY),
+    computed(
+        "B.2",
+        "Indicators of difference signals, cracked sun tooth",
+        "RMS difference, energy ratio, M8A and NA4 of both averages.",
+        SUN_CRACK,
+        transmission::indicators::differences_of_sun,
+    ),
+    computed(
+        "B.3",
+        "Indicators of exact difference signals, cracked sun tooth",
+        "RMS difference and M8A by average.",
+        SUN_CRACK,
+        transmission::indicators::exact_of_sun,
+    ),
 ];

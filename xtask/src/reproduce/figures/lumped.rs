@@ -52,9 +52,6 @@ pub fn at_900(context: &Context) -> anyhow::Result<Drawn> {
         drawn.panels.push(Panel::chart(letter, about, (CYCLE, DTE), lines));
     }
     drawn.note(
-        "The markers of the finite-element dynamics are missing: that computation is not part of this program yet.",
-    );
-    drawn.note(
         "(a) and (c) from the plane-stress curves, (b) from the three-dimensional ones, which are some 8 % stiffer.",
     );
     Ok(drawn)

@@ -6,3 +6,4 @@ pub mod chapter4;
 pub mod kinematics;
 pub mod lumped;
 pub mod scheme;
+pub mod transmission;
