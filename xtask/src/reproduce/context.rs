@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use anyhow::{Context as _, bail};
-use gearwright::case::{self, Case, SpurPairCase};
+use gear_geom::MeshSite;
+use gearwright::case::{self, Case, SpurPairCase, TransmissionCase};
 use gearwright::output::lumped_summary::Times;
 use gearwright::run::lumped_pair::analyses::{self, Findings};
 use gearwright::run::lumped_pair::states::{self, State};
@@ -13,6 +14,7 @@ use gearwright::run::lumped_pair::states::{self, State};
 use super::dynamics::Dynamics;
 use super::statics::{self, Statics};
 use super::store::{Store, hash};
+use super::vibration::Vibration;
 use super::{Level, root};
 
 /// Keys of spur-pair cases that the quick level sets, with the values.
@@ -34,12 +36,13 @@ pub struct Context<'a> {
     store: &'a Store,
     level: Level,
     lumped: RefCell<BTreeMap<String, Rc<Lumped>>>,
+    vibrations: RefCell<BTreeMap<String, Rc<Vibration>>>,
 }
 
 impl<'a> Context<'a> {
     /// Nothing computed yet.
     pub fn new(store: &'a Store, level: Level) -> Self {
-        Self { store, level, lumped: RefCell::default() }
+        Self { store, level, lumped: RefCell::default(), vibrations: RefCell::default() }
     }
 
     /// The text of a case file as it is run at this level.
@@ -111,6 +114,35 @@ impl<'a> Context<'a> {
         let name = format!("{}-{mesh_frequency}hz", file.trim_end_matches(".toml"));
         let key = format!("{} {picked:?}", self.key(&[file])?);
         self.store.study(&name, &key, || Dynamics::compute(&self.spur_pair(file)?, mesh_frequency, picked))
+    }
+
+    /// A transmission case.
+    pub fn transmission(&self, file: &str) -> anyhow::Result<TransmissionCase> {
+        match self.case(file)? {
+            Case::Transmission(case) => Ok(*case),
+            other => bail!("configs/{file} is a {}, not a transmission", other.kind()),
+        }
+    }
+
+    /// Vibration of a transmission case in all its states. Cases share tables of meshes and the reduced housing.
+    pub fn vibration(&self, file: &str) -> anyhow::Result<Rc<Vibration>> {
+        if let Some(run) = self.vibrations.borrow().get(file) {
+            return Ok(Rc::clone(run));
+        }
+        let name = format!("vibration-{}", file.trim_end_matches(".toml"));
+        let compute = || Vibration::compute(&self.transmission(file)?, &self.store.tables());
+        let run = Rc::new(self.store.study(&name, &self.key(&[file])?, compute)?);
+        self.vibrations.borrow_mut().insert(file.into(), Rc::clone(&run));
+        Ok(run)
+    }
+
+    /// Carrier turns at which the damaged tooth of a sun meets planets, during the record.
+    pub fn sun_engagements(&self, file: &str) -> anyhow::Result<Vec<f64>> {
+        let case = self.transmission(file)?;
+        let damage = case.severities.first().and_then(|s| s.damage.first()).context("the case has no damage")?;
+        let turns = f64::from(case.inputs.run.carrier_turns);
+        let met = case.train.engagements(damage.0, 0.0..turns)?;
+        Ok(met.iter().filter(|met| met.site == MeshSite::SunPlanet).map(|met| met.carrier_turns).collect())
     }
 
     /// A lumped-parameter case with all its analyses; run once for all figures that ask for it.

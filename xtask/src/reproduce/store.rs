@@ -15,15 +15,17 @@ use super::drawn::{Drawn, Saved};
 use super::{Level, root};
 
 /// Sources that a study depends on.
-const COMPUTING: [&str; 9] = [
+const COMPUTING: [&str; 11] = [
     "crates/gear-geom/src",
     "crates/fecm/src",
     "crates/lpm/src",
     "crates/hums/src",
+    "crates/planetary/src",
     "crates/gearwright/src/case",
     "crates/gearwright/src/run",
     "xtask/src/reproduce/statics.rs",
     "xtask/src/reproduce/dynamics.rs",
+    "xtask/src/reproduce/vibration.rs",
     "Cargo.lock",
 ];
 /// Sources that a figure depends on besides.
@@ -72,6 +74,11 @@ impl Store {
         let value = compute()?;
         keep(&file, &Kept { key, value: &value })?;
         Ok(value)
+    }
+
+    /// Where tables of meshes and reduced housings are kept.
+    pub fn tables(&self) -> Cache {
+        Cache::within(&self.folder.join("cache").join("transmission"))
     }
 
     fn figure_file(&self, id: &str) -> PathBuf {

@@ -1,10 +1,15 @@
 //! Vibration of a transmission's housing, as the figures need it: series of the sensors that are shown, FM4 of all others.
 
 use anyhow::{Context as _, ensure};
+use gear_geom::{CrackLength, Damage};
+use gearwright::case::TransmissionCase;
+use gearwright::case::transmission::damage::Severity;
+use gearwright::run::transmission::{self as run, cache::Cache};
 use hums::difference::{RemovalRule, exact_difference, split};
 use hums::indicator::basic::kurtosis;
 use hums::spectrum::{Spectrum, Window};
 use hums::tsa::average_periods;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// What an acceleration is averaged over before anything is computed from it.
@@ -158,10 +163,36 @@ pub struct Vibration {
     pub states: Vec<State>,
 }
 
-/// Acceleration of gravity (m/s^2).
-pub const GRAVITY: f64 = 9.806_65;
-
 impl Vibration {
+    /// Runs a case in all its states.
+    pub fn compute(case: &TransmissionCase, cache: &Cache) -> anyhow::Result<Self> {
+        let found = run::compute(case, cache, &())?.findings;
+        let clock = Clock {
+            per_mesh: case.inputs.run.steps_per_mesh_cycle as usize,
+            ring_teeth: case.inputs.ring.teeth as usize,
+            planets: case.train.planets(),
+            mesh_hz: found.mesh_frequency,
+            bevel_hz: case.bevel_mesh_frequency().unwrap_or(0.0),
+        };
+        let shown: Vec<usize> = found.shown(false).map(|(index, _)| index).collect();
+        let around: Vec<usize> = (0..found.sensors.len()).filter(|index| !shown.contains(index)).collect();
+        let healthy = found.states.first().context("no state was run")?;
+        let lengths = std::iter::once(0.0).chain(case.severities.iter().map(crack_percent));
+        let mut states = Vec::new();
+        for (state, percent) in found.states.iter().zip(lengths) {
+            let one = |index: &usize| {
+                let angle = found.sensors[*index].angle_deg;
+                Self::fm4(&clock, angle, &healthy.signals[*index], &state.signals[*index])
+            };
+            let damaged = state.number.is_some();
+            let around = if damaged { around.par_iter().map(one).collect::<anyhow::Result<_>>()? } else { Vec::new() };
+            let shown = shown.iter().map(|index| state.signals[*index].clone()).collect();
+            states.push(State { label: state.name.clone(), percent, shown, around });
+        }
+        let sensors = found.shown(false).map(|(_, sensor)| (sensor.name.clone(), sensor.angle_deg)).collect();
+        Self { clock, sensors, states }.checked()
+    }
+
     /// FM4 of one sensor from the accelerations of a healthy and a damaged transmission.
     pub fn fm4(clock: &Clock, angle: f64, healthy: &[f64], damaged: &[f64]) -> anyhow::Result<Fm4> {
         let mut exact = [0.0; 3];
@@ -196,6 +227,18 @@ impl Vibration {
         }
         Ok(self)
     }
+}
+
+/// Length of the crack of a severity (%), NaN where there is none.
+fn crack_percent(severity: &Severity) -> f64 {
+    let cracks = severity.damage.iter().filter_map(|(_, damage)| match damage {
+        Damage::Crack(crack) => match crack.length {
+            CrackLength::Chord(fraction) | CrackLength::Path(fraction) => Some(100.0 * fraction),
+            CrackLength::Length(_) => None,
+        },
+        _ => None,
+    });
+    cracks.fold(f64::NAN, f64::max)
 }
 
 impl State {
