@@ -5,7 +5,7 @@ use super::drawn::Drawn;
 use super::figures::{chapter2, chapter3, chapter4, kinematics, lumped, scheme, transmission};
 
 const RING_CRACK: &[&str] = &[transmission::RING];
-const RING_PLACES: &[&str] = &[transmission::RING, transmission::ELSEWHERE[0], transmission::ELSEWHERE[1]];
+const RING_PLACES: &[&str] = &[transmission::PLACES];
 const SUN_CRACK: &[&str] = &[transmission::SUN];
 
 /// A figure or table.

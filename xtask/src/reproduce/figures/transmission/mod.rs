@@ -15,12 +15,12 @@ use crate::reproduce::vibration::{Clock, State};
 pub const RING: &str = "transmission-ring-crack.toml";
 /// Sun.
 pub const SUN: &str = "transmission-sun-crack.toml";
-/// The damaged ring tooth at its other places.
-pub const ELSEWHERE: [&str; 2] = ["transmission-ring-crack-155.toml", "transmission-ring-crack-275.toml"];
+/// The damaged ring tooth at three places.
+pub const PLACES: &str = "transmission-ring-crack-places.toml";
 /// Sensor near the input port, where the experiments had theirs.
-pub const INPUT_PORT: &str = "input-port";
+pub const INPUT_PORT: &str = "input port";
 /// Sensor beside the ring tooth that is damaged.
-pub const RING_TOOTH: &str = "ring-tooth";
+pub const RING_TOOTH: &str = "damaged tooth";
 /// What FM4 and M8A are for Gaussian noise: the thresholds.
 pub const FM4_THRESHOLD: f64 = 3.0;
 /// As above.

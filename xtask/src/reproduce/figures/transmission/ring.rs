@@ -1,6 +1,6 @@
 //! Figures 5.5 to 5.10 and Table 5.2: a root crack on a tooth of the ring.
 
-use anyhow::Context as _;
+use anyhow::{Context as _, ensure};
 use gearwright::plot::Band;
 use hums::indicator::basic::{kurtosis, peak};
 
@@ -223,18 +223,20 @@ pub fn around_the_housing(context: &Context) -> anyhow::Result<Drawn> {
 
 /// Figure 5.10.
 pub fn elsewhere(context: &Context) -> anyhow::Result<Drawn> {
-    let cases = [RING, ELSEWHERE[0], ELSEWHERE[1]].map(|file| context.vibration(file));
-    let places = [("35.6°", BLUE), ("155.6°", RED), ("275.6°", GREEN)];
+    let vibration = context.vibration(PLACES)?;
+    let colours = [BLUE, RED, GREEN];
     let mut drawn = Drawn::default();
     for (letter, percent) in [("a", 20.0), ("b", 50.0)] {
-        let mut rings = Vec::new();
-        for (case, (place, colour)) in cases.iter().zip(places) {
-            let case = case.as_ref().map_err(|error| anyhow::anyhow!("{error:#}"))?;
-            let state = case.damaged().iter().find(|s| s.percent == percent).context("no such crack")?;
-            let points = state.around.iter().map(|s| (s.angle, s.exact[1])).collect();
-            rings.push((format!("tooth at {place}"), colour, points));
-        }
-        let values = || rings.iter().flat_map(|r: &(String, &str, Vec<(f64, f64)>)| &r.2).map(|p| p.1);
+        let states = vibration.damaged().iter().filter(|s| s.percent == percent);
+        let rings: Vec<(String, &'static str, Vec<(f64, f64)>)> = states
+            .zip(colours)
+            .map(|(state, colour)| {
+                let points = state.around.iter().map(|s| (s.angle, s.exact[1])).collect();
+                (state.label.clone(), colour, points)
+            })
+            .collect();
+        ensure!(rings.len() == colours.len(), "the case has not three cracks of {percent} %");
+        let values = || rings.iter().flat_map(|r| &r.2).map(|p| p.1);
         let least = values().fold(f64::INFINITY, f64::min);
         drawn.value(format!("{percent:.0} %, least FM4"), least);
         drawn.claim(format!("{percent:.0} % told at every place"), least > FM4_THRESHOLD, format!("least FM4 {least:.2}"));
