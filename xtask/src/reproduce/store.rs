@@ -8,6 +8,7 @@ use std::hash::{DefaultHasher, Hasher};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow};
+use gearwright::run::transmission::cache::Cache;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 

@@ -88,6 +88,15 @@ pub struct Place {
     pub height: f64,
 }
 
+impl TransmissionCase {
+    /// Mesh frequency of the bevel stage, if there is one (Hz).
+    #[must_use]
+    pub fn bevel_mesh_frequency(&self) -> Option<f64> {
+        let pinion = self.inputs.bevel.as_ref()?.pinion_teeth;
+        Some(self.inputs.run.speed_rpm / 60.0 * f64::from(pinion))
+    }
+}
+
 /// Resolves a case; `folder` is where files it refers to are looked for.
 ///
 /// # Errors

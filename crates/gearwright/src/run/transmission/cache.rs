@@ -27,6 +27,12 @@ impl Cache {
         Self { folder: kept.then(|| parent.join(FOLDER)) }
     }
 
+    /// A cache in a folder of its own.
+    #[must_use]
+    pub fn within(folder: &Path) -> Self {
+        Self { folder: Some(folder.to_path_buf()) }
+    }
+
     /// What was kept under a name and a key, or what `make` makes, which is kept.
     ///
     /// # Errors

@@ -29,10 +29,22 @@ use super::{Finished, RunObserver};
 use cache::Cache;
 use findings::{Findings, Sensor, State};
 use laws::laws;
+use model::Laws;
 use signals::{Judge, periods};
 
 /// Natural frequencies told (Hz), at most.
 const HIGHEST_MODE: f64 = 12e3;
+
+/// A case, computed.
+#[derive(Debug)]
+pub struct Computed {
+    /// Laws of the meshes of the healthy state, then of every severity.
+    pub laws: Vec<Laws>,
+    /// What the runs show.
+    pub findings: Findings,
+    /// What it took.
+    pub times: summary::Times,
+}
 
 /// Runs a transmission case into `target`.
 ///
@@ -40,14 +52,37 @@ const HIGHEST_MODE: f64 = 12e3;
 /// Model errors, and anything the file system says. Nothing is left at `target` then; tables made so far stay in the cache.
 pub fn run(case: &TransmissionCase, target: &Path, observer: &dyn RunObserver) -> anyhow::Result<Finished> {
     let folder = ResultsFolder::create(target)?;
-    let cache = Cache::beside(target, case.inputs.output.cache);
+    let Computed { laws, findings, mut times } =
+        compute(case, &Cache::beside(target, case.inputs.output.cache), observer)?;
+    observer.stage("writing results");
+    let clock = Instant::now();
+    write(case, &folder, &findings)?;
+    if case.inputs.output.plots {
+        let file = |name: &str| folder.file(name);
+        for (name, figure) in figures::all(&case.inputs.title, &findings) {
+            figure.save(&file, &name).map_err(|e| anyhow!("plot {name}: {e}"))?;
+        }
+    }
+    times.output = clock.elapsed().as_secs_f64();
+    let whole = summary::summary(case, &laws[0], &findings, times);
+    std::fs::write(folder.file("summary.json"), serde_json::to_string_pretty(&whole)?)?;
+    stopped(observer)?;
+    let screen = summary::screen(case, &findings, &times);
+    Ok(Finished { folder: folder.publish()?, screen, unusable: 0 })
+}
+
+/// Computes all states of a case and judges their signals.
+///
+/// # Errors
+/// Model errors; cancellation. Tables made so far stay in the cache.
+pub fn compute(case: &TransmissionCase, cache: &Cache, observer: &dyn RunObserver) -> anyhow::Result<Computed> {
     let mut times = summary::Times::default();
     let clock = Instant::now();
-    let laws = laws(case, &cache, observer)?;
+    let laws = laws(case, cache, observer)?;
     times.contact = clock.elapsed().as_secs_f64();
     stopped(observer)?;
     let clock = Instant::now();
-    let housing = case.housing.as_ref().map(|plan| housing::reduced(plan, &cache, observer)).transpose()?;
+    let housing = case.housing.as_ref().map(|plan| housing::reduced(plan, cache, observer)).transpose()?;
     times.housing = clock.elapsed().as_secs_f64();
     stopped(observer)?;
 
@@ -75,22 +110,7 @@ pub fn run(case: &TransmissionCase, target: &Path, observer: &dyn RunObserver) -
     let clock = Instant::now();
     let findings = findings(case, runs, modes, parts, housing.as_ref())?;
     times.signals = clock.elapsed().as_secs_f64();
-
-    observer.stage("writing results");
-    let clock = Instant::now();
-    write(case, &folder, &findings)?;
-    if case.inputs.output.plots {
-        let file = |name: &str| folder.file(name);
-        for (name, figure) in figures::all(&case.inputs.title, &findings) {
-            figure.save(&file, &name).map_err(|e| anyhow!("plot {name}: {e}"))?;
-        }
-    }
-    times.output = clock.elapsed().as_secs_f64();
-    let whole = summary::summary(case, &laws[0], &findings, times);
-    std::fs::write(folder.file("summary.json"), serde_json::to_string_pretty(&whole)?)?;
-    stopped(observer)?;
-    let screen = summary::screen(case, &findings, &times);
-    Ok(Finished { folder: folder.publish()?, screen, unusable: 0 })
+    Ok(Computed { laws, findings, times })
 }
 
 fn stopped(observer: &dyn RunObserver) -> anyhow::Result<()> {

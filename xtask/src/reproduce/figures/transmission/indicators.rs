@@ -116,7 +116,7 @@ fn largest_size(values: impl IntoIterator<Item = f64>) -> f64 {
 }
 
 fn ring(context: &Context, source: Source, averages: &[Average], indicator: Indicator) -> anyhow::Result<Vec<Row>> {
-    rows(&context.vibration(RING)?, RING_TOOTH, source, averages, indicator)
+    rows(context.vibration(RING)?.as_ref(), RING_TOOTH, source, averages, indicator)
 }
 
 /// Figure A.1.
@@ -241,7 +241,7 @@ pub fn m8a_of_ring(context: &Context) -> anyhow::Result<Drawn> {
 }
 
 fn sun(context: &Context, source: Source, averages: &[Average], indicator: Indicator) -> anyhow::Result<Vec<Row>> {
-    rows(&context.vibration(SUN)?, INPUT_PORT, source, averages, indicator)
+    rows(context.vibration(SUN)?.as_ref(), INPUT_PORT, source, averages, indicator)
 }
 
 /// Figure B.1.

@@ -6,7 +6,8 @@ use anyhow::Context as _;
 use gear_geom::{Damage, FlankSide, Gear, Member, MeshSite, OutlineSegment, TrainTooth};
 use gearwright::case::TransmissionCase;
 use gearwright::plot::drawing::{Align, Drawing, Label, Stroke};
-use nalgebra::{Point2, Rotation2};
+use nalgebra::{Point2, Rotation2, Rotation3, Vector3};
+use planetary::housing::surface::Surface;
 
 use super::*;
 use crate::reproduce::context::Context;
@@ -71,15 +72,56 @@ fn damaged_tooth(case: &TransmissionCase) -> anyhow::Result<TrainTooth> {
     Ok(damage.0)
 }
 
+/// Outside of the housing at the height of the gears (mm); nothing where the housing is rigid.
+fn wall(case: &TransmissionCase) -> Polyline {
+    let Some(plan) = &case.housing else { return Vec::new() };
+    let surface = Surface::new(&plan.solid.mesh);
+    let at = |degree: i32| surface.outermost(&plan.solid.mesh, f64::from(degree).to_radians(), 0.0);
+    (0..=180).filter_map(|k| at(2 * k)).map(|p| (p.position[0] * MM, p.position[1] * MM)).collect()
+}
+
+/// Shades of faces by how far they turn to the light, dark to bright.
+const SHADES: [&str; 8] = ["#6f7782", "#7f8893", "#8f98a3", "#a0a8b2", "#b1b8c1", "#c2c8d0", "#d4d9df", "#e6e9ed"];
+
+/// The housing's mesh seen from outside and above, parallel projection; nearer faces hide farther ones.
+fn housing_view(case: &TransmissionCase) -> Option<Drawing> {
+    let mesh = &case.housing.as_ref()?.solid.mesh;
+    // looking from the input port's side
+    let toward = Rotation3::from_euler_angles(0.0, 0.0, case.inputs.bevel.as_ref().map_or(0.0, |b| b.pinion_at_deg - 40.0).to_radians())
+        * Vector3::new(1.0, 0.0, 0.45).normalize();
+    let right = Vector3::z().cross(&toward).normalize();
+    let up = toward.cross(&right);
+    let light = (toward + 0.8 * up - 0.5 * right).normalize();
+    let mut faces: Vec<(f64, usize, Polyline)> = mesh
+        .outer_faces()
+        .iter()
+        .filter_map(|face| {
+            let corners = if face.len() % 3 == 0 { 3 } else { 4 };
+            let points: Vec<Vector3<f64>> = face.iter().take(corners).map(|&node| mesh.node(node)).collect();
+            let normal = (points[1] - points[0]).cross(&(points[corners - 1] - points[0])).try_normalize(0.0)?;
+            if normal.dot(&toward) <= 0.0 {
+                return None;
+            }
+            let shade = (normal.dot(&light).max(0.0) * (SHADES.len() - 1) as f64).round() as usize;
+            let depth = points.iter().map(|p| p.dot(&toward)).sum::<f64>() / corners as f64;
+            let outline = points.iter().chain(points.first()).map(|p| (p.dot(&right) * MM, p.dot(&up) * MM)).collect();
+            Some((depth, shade.min(SHADES.len() - 1), outline))
+        })
+        .collect();
+    faces.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let strokes = faces.into_iter().map(|(_, shade, outline)| Stroke::thin(vec![outline]).styled("#4a525c", 0.25).filled(SHADES[shade]));
+    Some(Drawing { strokes: strokes.collect(), scale_bar: Some((50.0, "50 mm".into())), ..Drawing::default() })
+}
+
 /// Top view of gears, housing and sensors, with the damaged tooth.
 fn top_view(case: &TransmissionCase) -> anyhow::Result<Drawing> {
     let spec = case.train.spec();
     let origin = Point2::origin();
     let mut strokes = vec![];
     let rim = spec.ring.rim_radius();
-    // the wall outside the ring is drawn where its sensors are
-    let wall = case.sensors.iter().map(|s| s.radius).fold(rim, f64::max) * MM;
-    strokes.push(Stroke::thin(vec![circle((0.0, 0.0), wall)]).styled(GREY, 1.2).filled("#e9e6df"));
+    let outside = wall(case);
+    let reach = outside.iter().map(|p| p.0.hypot(p.1)).fold(rim * MM, f64::max);
+    strokes.push(Stroke::thin(vec![outside.clone()]).styled(GREY, 1.2).filled("#e9e6df"));
     strokes.push(Stroke::thin(vec![circle((0.0, 0.0), rim * MM)]).styled(GREEN, 0.9).filled("#dbe8d5"));
     let ring = teeth(&spec.ring, origin, spec.ring_tooth_angle);
     strokes.push(Stroke::thin(vec![ring]).styled(GREEN, 0.8).filled("#ffffff"));
@@ -97,7 +139,10 @@ fn top_view(case: &TransmissionCase) -> anyhow::Result<Drawing> {
     for sensor in case.sensors.iter().take(case.named_sensors) {
         let (sin, cos) = sensor.angle.sin_cos();
         let colour = if sensor.name == INPUT_PORT { PURPLE } else { BLACK };
-        let dot = circle((wall * cos, wall * sin), 4.0);
+        // on the wall in that direction
+        let along = |p: &&(f64, f64)| p.0 * cos + p.1 * sin;
+        let at = outside.iter().max_by(|a, b| along(a).total_cmp(&along(b))).map_or(reach, |p| along(&p));
+        let dot = circle((at * cos, at * sin), 4.0);
         strokes.push(Stroke::thin(vec![dot]).styled(colour, 1.0).filled(colour).named(&format!("sensor {}", sensor.name)));
     }
     let damaged = damaged_tooth(case)?;
@@ -111,7 +156,7 @@ fn top_view(case: &TransmissionCase) -> anyhow::Result<Drawing> {
     strokes.push(Stroke::thin(vec![square]).styled(RED, 1.6).named("damaged tooth"));
     for degrees in [0, 90, 180, 270] {
         let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
-        let out = wall + 14.0;
+        let out = reach + 14.0;
         labels.push(Label::new((out * cos, out * sin - 2.0), &format!("{degrees}°"), Align::Middle));
     }
     let border = [24.0, 24.0, 18.0, 18.0];
@@ -143,6 +188,8 @@ pub fn cracked_tooth(context: &Context, file: &str, letter: &'static str, about:
 pub fn ring(context: &Context) -> anyhow::Result<Drawn> {
     let case = context.transmission(RING)?;
     let mut drawn = Drawn::default();
+    let housing = housing_view(&case).context("the case has no housing")?;
+    drawn.panels.push(Panel::drawing("a", "The housing's finite-element mesh, from the side of the input port.", housing));
     drawn.panels.push(Panel::drawing("b", "Top view at the start: gears, sensors, damaged ring tooth.", top_view(&case)?));
     drawn.note(MODEL);
     Ok(drawn)
