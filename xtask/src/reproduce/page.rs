@@ -151,7 +151,9 @@ fn figure(page: &mut String, folder: &Path, done: &Done, printed: &Printed) -> a
         escaped(figure.about)
     )?;
     match &done.outcome {
-        Outcome::NotAsked => page.push_str("<p class=\"missing\">Not computed: others were asked for with --only.</p>\n"),
+        Outcome::NotAsked => {
+            page.push_str("<p class=\"missing\">Not computed: others were asked for with --only.</p>\n")
+        }
         Outcome::Failed(error) => writeln!(page, "<p class=\"failed\">Failed: {}</p>", escaped(error))?,
         Outcome::Drawn(saved) => content(page, folder, saved)?,
     }

@@ -354,7 +354,7 @@ pub const FIGURES: &[Figure] = &[
         "T5.1",
         "Frequencies of the rotorcraft transmission",
         "What follows from its tooth numbers and input speed.",
-        &[],
+        RING_CRACK,
         kinematics::planetary,
     ),
     computed(
@@ -469,13 +469,7 @@ pub const FIGURES: &[Figure] = &[
         SUN_CRACK,
         transmission::sun::exact_differences,
     ),
-    computed(
-        "6.7",
-        "FM4 by difference signal and average",
-        "Over crack length.",
-        SUN_CRACK,
-        transmission::sun::fm4,
-    ),
+    computed("6.7", "FM4 by difference signal and average", "Over crack length.", SUN_CRACK, transmission::sun::fm4),
     computed(
         "6.8",
         "FM4 around the housing",

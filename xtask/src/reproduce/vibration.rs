@@ -223,7 +223,11 @@ impl Vibration {
     pub fn checked(self) -> anyhow::Result<Self> {
         let turn = self.clock.per_turn();
         for record in self.states.iter().flat_map(|s| &s.shown) {
-            ensure!(!record.is_empty() && record.len() % turn == 0, "a record of {} samples is no whole number of carrier turns", record.len());
+            ensure!(
+                !record.is_empty() && record.len() % turn == 0,
+                "a record of {} samples is no whole number of carrier turns",
+                record.len()
+            );
         }
         Ok(self)
     }

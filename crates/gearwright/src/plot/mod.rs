@@ -307,7 +307,12 @@ impl PolarChart {
         plot = plot.with_r_min(self.radii.0).with_r_max(self.radii.1).with_legend(true);
         for line in &self.lines {
             let (angles, radii): (Vec<f64>, Vec<f64>) = line.points.iter().copied().unzip();
-            plot = plot.with_series_labeled(radii, angles, line.name.clone(), PolarMode::Line).with_color(line.colour);
+            plot = if line.name.is_empty() {
+                plot.with_series_line(radii, angles)
+            } else {
+                plot.with_series_labeled(radii, angles, line.name.clone(), PolarMode::Line)
+            }
+            .with_color(line.colour);
         }
         let plots: Vec<Plot> = vec![plot.into()];
         let layout = Layout::auto_from_plots(&plots).with_title(self.title.clone());

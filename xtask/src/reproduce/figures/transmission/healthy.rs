@@ -36,7 +36,13 @@ fn spectrum_values(drawn: &mut Drawn, spectrum: &[(f64, f64)]) {
     drawn.value("healthy, frequency of the largest line", frequency);
 }
 
-fn clusters(drawn: &mut Drawn, vibration: &Vibration, spectrum: &[(f64, f64)], panels: &[(&'static str, &str, f64)], colour: &'static str) {
+fn clusters(
+    drawn: &mut Drawn,
+    vibration: &Vibration,
+    spectrum: &[(f64, f64)],
+    panels: &[(&'static str, &str, f64)],
+    colour: &'static str,
+) {
     let mut worst: f64 = 1.0;
     for (letter, about, centre) in panels {
         let lines = cluster(vibration, spectrum, *centre);
@@ -52,7 +58,11 @@ pub fn accelerations(context: &Context) -> anyhow::Result<Drawn> {
     let vibration = context.vibration(RING)?;
     let points = vibration.clock.over_turns(record(&vibration, INPUT_PORT)?);
     let mut drawn = Drawn::default();
-    drawn.panels.push(time_panel("a", "Three turns of the carrier, sensor near the input port.", vec![solid("", PURPLE, points)]));
+    drawn.panels.push(time_panel(
+        "a",
+        "Three turns of the carrier, sensor near the input port.",
+        vec![solid("", PURPLE, points)],
+    ));
     drawn.note(MODEL);
     drawn.note(EXPERIMENT);
     Ok(drawn)
@@ -64,7 +74,11 @@ pub fn spectra(context: &Context) -> anyhow::Result<Drawn> {
     let spectrum = vibration.clock.spectrum(record(&vibration, INPUT_PORT)?, HIGHEST)?;
     let mut drawn = Drawn::default();
     spectrum_values(&mut drawn, &spectrum);
-    drawn.panels.push(spectrum_panel("a", "Spectrum, sensor near the input port.", vec![solid("", PURPLE, spectrum.clone())]));
+    drawn.panels.push(spectrum_panel(
+        "a",
+        "Spectrum, sensor near the input port.",
+        vec![solid("", PURPLE, spectrum.clone())],
+    ));
     let mesh = vibration.clock.mesh_hz;
     let panels = [
         ("c", "About the mesh frequency of the planetary stage.", mesh),
@@ -84,7 +98,11 @@ pub fn near_the_tooth(context: &Context) -> anyhow::Result<Drawn> {
     let mut drawn = Drawn::default();
     spectrum_values(&mut drawn, &spectrum);
     let points = vibration.clock.over_turns(record);
-    drawn.panels.push(time_panel("a", "Three turns of the carrier, sensor beside the ring tooth to be damaged.", vec![solid("", BLACK, points)]));
+    drawn.panels.push(time_panel(
+        "a",
+        "Three turns of the carrier, sensor beside the ring tooth to be damaged.",
+        vec![solid("", BLACK, points)],
+    ));
     drawn.panels.push(spectrum_panel("b", "Its spectrum.", vec![solid("", BLACK, spectrum)]));
     drawn.note(MODEL);
     Ok(drawn)
@@ -96,9 +114,11 @@ pub fn stretches(context: &Context) -> anyhow::Result<Drawn> {
     let record = record(&vibration, INPUT_PORT)?;
     let mut drawn = Drawn::default();
     let third = 1.0 / vibration.clock.planets as f64;
-    for (letter, about, to) in
-        [("a", "Three turns of the carrier.", 3.0), ("b", "The first planet pass.", third), ("c", "The first turn.", 1.0)]
-    {
+    for (letter, about, to) in [
+        ("a", "Three turns of the carrier.", 3.0),
+        ("b", "The first planet pass.", third),
+        ("c", "The first turn.", 1.0),
+    ] {
         let points = over_turns(&vibration.clock, record, (0.0, to));
         drawn.panels.push(time_panel(letter, about, vec![solid("", BLUE, points)]));
     }

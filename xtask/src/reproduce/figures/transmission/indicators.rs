@@ -65,7 +65,13 @@ impl Row {
     }
 }
 
-fn rows(vibration: &Vibration, sensor: &str, source: Source, averages: &[Average], indicator: Indicator) -> anyhow::Result<Vec<Row>> {
+fn rows(
+    vibration: &Vibration,
+    sensor: &str,
+    source: Source,
+    averages: &[Average],
+    indicator: Indicator,
+) -> anyhow::Result<Vec<Row>> {
     let sensor = vibration.sensor(sensor)?;
     let (clock, healthy) = (&vibration.clock, &vibration.healthy()?.shown[sensor]);
     let row = |&average: &Average| {
@@ -103,7 +109,12 @@ fn value_panel(letter: &'static str, name: &str, rows: &[Row]) -> Panel {
 fn pair_of_panels(drawn: &mut Drawn, name: &str, rows: &[Row]) {
     drawn.panels.push(value_panel("a", name, rows));
     let label = format!("Change of {name} (%)");
-    drawn.panels.push(Panel::chart("b", "Change against the healthy state.", (LENGTH, &label), lines(rows, Row::change)));
+    drawn.panels.push(Panel::chart(
+        "b",
+        "Change against the healthy state.",
+        (LENGTH, &label),
+        lines(rows, Row::change),
+    ));
     drawn.note(MODEL);
 }
 
@@ -304,7 +315,11 @@ pub fn exact_of_sun(context: &Context) -> anyhow::Result<Drawn> {
     let found = sun(context, Source::Exact, &Average::ALL, m8a_of)?;
     let telling = found.iter().filter(|row| row.average != Average::PlanetPass);
     let least = telling.flat_map(|row| &row.values).map(|v| v.1).fold(f64::INFINITY, f64::min);
-    drawn.claim("unaltered and carrier averages tell every crack", least > M8A_THRESHOLD, format!("least M8A {least:.0}"));
+    drawn.claim(
+        "unaltered and carrier averages tell every crack",
+        least > M8A_THRESHOLD,
+        format!("least M8A {least:.0}"),
+    );
     drawn.panels.push(value_panel("b", "M8A", &found).mark(threshold(M8A_THRESHOLD, "")));
     drawn.note(MODEL);
     Ok(drawn)

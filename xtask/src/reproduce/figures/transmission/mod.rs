@@ -35,7 +35,8 @@ const HIGHEST: f64 = 10_000.0;
 
 /// What every figure of the transmission says of its model.
 const MODEL: &str = "Housing, bearing stiffnesses and damping are not printed: the case file says what was chosen and from where, so amplitudes are \
-                     those of another housing than the dissertation's.";
+                     those of another housing than the dissertation's. Angles of sensors are counted from a planet at the start; the input port's is one of the three at \
+                     which a planet passes at the printed 0.092 of a carrier cycle, so its sensor is near the damaged ring tooth's.";
 
 /// Colours of the healthy state and of cracks of 20, 50 and 80 % of the ring.
 const RING_COLOURS: [&str; 4] = [BLACK, BLUE, RED, GREEN];
@@ -76,15 +77,26 @@ fn largest(spectrum: &[(f64, f64)]) -> (f64, f64) {
     spectrum.iter().copied().fold((0.0, 0.0), |best, line| if line.1 > best.1 { line } else { best })
 }
 
+/// A value over sensor angles (degrees), to be drawn about the housing.
+struct Ring {
+    name: String,
+    colour: &'static str,
+    points: Vec<(f64, f64)>,
+}
+
 /// Closed lines about the housing, of the natural logarithm of a value over sensor angles, with the threshold as a circle.
-fn polar(letter: &'static str, about: &str, rings: Vec<(String, &'static str, Vec<(f64, f64)>)>, threshold: f64) -> Panel {
-    let radii = || rings.iter().flat_map(|ring| &ring.2).map(|point| point.1.ln());
+fn polar(letter: &'static str, about: &str, rings: Vec<Ring>, threshold: f64) -> Panel {
+    let radii = || rings.iter().flat_map(|ring| &ring.points).map(|point| point.1.ln());
     let rim = radii().fold(threshold.ln(), f64::max).ceil();
     let centre = radii().fold(0.0, f64::min).floor();
     let mut lines: Vec<Line> = rings
         .iter()
-        .flat_map(|(name, colour, points)| arcs(points).into_iter().enumerate().map(|(k, arc)| (if k == 0 { name.as_str() } else { "" }, *colour, arc)))
-        .map(|(name, colour, arc)| solid(name, colour, arc.into_iter().map(|(angle, value)| (angle, value.ln())).collect()))
+        .flat_map(|Ring { name, colour, points }| {
+            arcs(points).into_iter().enumerate().map(|(k, arc)| (if k == 0 { name.as_str() } else { "" }, *colour, arc))
+        })
+        .map(|(name, colour, arc)| {
+            solid(name, colour, arc.into_iter().map(|(angle, value)| (angle, value.ln())).collect())
+        })
         .collect();
     let circle = (0..=360).map(|degree| (f64::from(degree), threshold.ln())).collect();
     lines.push(line("threshold", MAGENTA, Pattern::Dashed, circle));

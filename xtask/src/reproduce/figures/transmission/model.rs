@@ -39,13 +39,17 @@ fn tooth(gear: &Gear, centre: Point2<f64>, angle: f64) -> Polyline {
 /// All teeth of a gear, tooth 0 at an angle; counter-clockwise.
 fn teeth(gear: &Gear, centre: Point2<f64>, first: f64) -> Polyline {
     let pitch = TAU / f64::from(gear.teeth());
-    let mut outline: Polyline = (0..gear.teeth()).flat_map(|k| tooth(gear, centre, first + pitch * f64::from(k))).collect();
+    let mut outline: Polyline =
+        (0..gear.teeth()).flat_map(|k| tooth(gear, centre, first + pitch * f64::from(k))).collect();
     outline.extend(outline.first().copied());
     outline
 }
 
 fn circle(centre: (f64, f64), radius: f64) -> Polyline {
-    (0..=120).map(|k| (TAU * f64::from(k) / 120.0).sin_cos()).map(|(s, c)| (centre.0 + radius * c, centre.1 + radius * s)).collect()
+    (0..=120)
+        .map(|k| (TAU * f64::from(k) / 120.0).sin_cos())
+        .map(|(s, c)| (centre.0 + radius * c, centre.1 + radius * s))
+        .collect()
 }
 
 /// Angle of the centre line of a tooth at rest (rad).
@@ -87,8 +91,11 @@ const SHADES: [&str; 8] = ["#6f7782", "#7f8893", "#8f98a3", "#a0a8b2", "#b1b8c1"
 fn housing_view(case: &TransmissionCase) -> Option<Drawing> {
     let mesh = &case.housing.as_ref()?.solid.mesh;
     // looking from the input port's side
-    let toward = Rotation3::from_euler_angles(0.0, 0.0, case.inputs.bevel.as_ref().map_or(0.0, |b| b.pinion_at_deg - 40.0).to_radians())
-        * Vector3::new(1.0, 0.0, 0.45).normalize();
+    let toward = Rotation3::from_euler_angles(
+        0.0,
+        0.0,
+        case.inputs.bevel.as_ref().map_or(0.0, |b| b.pinion_at_deg - 40.0).to_radians(),
+    ) * Vector3::new(1.0, 0.0, 0.45).normalize();
     let right = Vector3::z().cross(&toward).normalize();
     let up = toward.cross(&right);
     let light = (toward + 0.8 * up - 0.5 * right).normalize();
@@ -109,7 +116,9 @@ fn housing_view(case: &TransmissionCase) -> Option<Drawing> {
         })
         .collect();
     faces.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let strokes = faces.into_iter().map(|(_, shade, outline)| Stroke::thin(vec![outline]).styled("#4a525c", 0.25).filled(SHADES[shade]));
+    let strokes = faces
+        .into_iter()
+        .map(|(_, shade, outline)| Stroke::thin(vec![outline]).styled("#4a525c", 0.25).filled(SHADES[shade]));
     Some(Drawing { strokes: strokes.collect(), scale_bar: Some((50.0, "50 mm".into())), ..Drawing::default() })
 }
 
@@ -134,7 +143,8 @@ fn top_view(case: &TransmissionCase) -> anyhow::Result<Drawing> {
     }
     let sun = teeth(&spec.sun, origin, case.train.sun_tooth_angle());
     strokes.push(Stroke::thin(vec![sun]).styled(BLUE, 0.8).filled("#d5def5"));
-    strokes.push(Stroke::thin(vec![circle((0.0, 0.0), spec.sun.rim_radius() * MM)]).styled(BLUE, 0.8).filled("#ffffff"));
+    strokes
+        .push(Stroke::thin(vec![circle((0.0, 0.0), spec.sun.rim_radius() * MM)]).styled(BLUE, 0.8).filled("#ffffff"));
     let mut labels = Vec::new();
     for sensor in case.sensors.iter().take(case.named_sensors) {
         let (sin, cos) = sensor.angle.sin_cos();
@@ -143,7 +153,8 @@ fn top_view(case: &TransmissionCase) -> anyhow::Result<Drawing> {
         let along = |p: &&(f64, f64)| p.0 * cos + p.1 * sin;
         let at = outside.iter().max_by(|a, b| along(a).total_cmp(&along(b))).map_or(reach, |p| along(&p));
         let dot = circle((at * cos, at * sin), 4.0);
-        strokes.push(Stroke::thin(vec![dot]).styled(colour, 1.0).filled(colour).named(&format!("sensor {}", sensor.name)));
+        strokes
+            .push(Stroke::thin(vec![dot]).styled(colour, 1.0).filled(colour).named(&format!("sensor {}", sensor.name)));
     }
     let damaged = damaged_tooth(case)?;
     let (angle, radius) = match damaged {
@@ -152,7 +163,8 @@ fn top_view(case: &TransmissionCase) -> anyhow::Result<Drawing> {
         TrainTooth::Planet(..) => anyhow::bail!("figures of the dissertation have no damaged planet"),
     };
     let (x, y) = (radius * angle.cos() * MM, radius * angle.sin() * MM);
-    let square = vec![(x - 4.0, y - 4.0), (x + 4.0, y - 4.0), (x + 4.0, y + 4.0), (x - 4.0, y + 4.0), (x - 4.0, y - 4.0)];
+    let square =
+        vec![(x - 4.0, y - 4.0), (x + 4.0, y - 4.0), (x + 4.0, y + 4.0), (x - 4.0, y + 4.0), (x - 4.0, y - 4.0)];
     strokes.push(Stroke::thin(vec![square]).styled(RED, 1.6).named("damaged tooth"));
     for degrees in [0, 90, 180, 270] {
         let (sin, cos) = f64::from(degrees).to_radians().sin_cos();
@@ -172,7 +184,13 @@ fn crack_side(case: &TransmissionCase) -> anyhow::Result<FlankSide> {
 }
 
 /// Root cracks of 20, 50 and 80 % in the damaged tooth.
-pub fn cracked_tooth(context: &Context, file: &str, letter: &'static str, about: &str, colours: [&'static str; 4]) -> anyhow::Result<Panel> {
+pub fn cracked_tooth(
+    context: &Context,
+    file: &str,
+    letter: &'static str,
+    about: &str,
+    colours: [&'static str; 4],
+) -> anyhow::Result<Panel> {
     let case = context.transmission(file)?;
     let spec = case.train.spec();
     let gear = match damaged_tooth(&case)? {
@@ -180,7 +198,8 @@ pub fn cracked_tooth(context: &Context, file: &str, letter: &'static str, about:
         TrainTooth::Sun(_) => &spec.sun,
         TrainTooth::Planet(..) => &spec.planet,
     };
-    let lengths = [(0.2, colours[1], Pattern::Solid), (0.5, colours[2], Pattern::Solid), (0.8, colours[3], Pattern::Solid)];
+    let lengths =
+        [(0.2, colours[1], Pattern::Solid), (0.5, colours[2], Pattern::Solid), (0.8, colours[3], Pattern::Solid)];
     Ok(Panel::drawing(letter, about, scheme::cracks(gear, crack_side(&case)?, &lengths)?))
 }
 
@@ -189,8 +208,16 @@ pub fn ring(context: &Context) -> anyhow::Result<Drawn> {
     let case = context.transmission(RING)?;
     let mut drawn = Drawn::default();
     let housing = housing_view(&case).context("the case has no housing")?;
-    drawn.panels.push(Panel::drawing("a", "The housing's finite-element mesh, from the side of the input port.", housing));
-    drawn.panels.push(Panel::drawing("b", "Top view at the start: gears, sensors, damaged ring tooth.", top_view(&case)?));
+    drawn.panels.push(Panel::drawing(
+        "a",
+        "The housing's finite-element mesh, from the side of the input port.",
+        housing,
+    ));
+    drawn.panels.push(Panel::drawing(
+        "b",
+        "Top view at the start: gears, sensors, damaged ring tooth.",
+        top_view(&case)?,
+    ));
     drawn.note(MODEL);
     Ok(drawn)
 }
@@ -200,7 +227,11 @@ pub fn sun(context: &Context) -> anyhow::Result<Drawn> {
     let case = context.transmission(SUN)?;
     let spec = case.train.spec();
     let mut drawn = Drawn::default();
-    drawn.panels.push(Panel::drawing("a", "Top view at the start, with the sensor near the input port.", top_view(&case)?));
+    drawn.panels.push(Panel::drawing(
+        "a",
+        "Top view at the start, with the sensor near the input port.",
+        top_view(&case)?,
+    ));
     let damaged = tooth_angle(&case, damaged_tooth(&case)?)?;
     let outline = teeth(&spec.sun, Point2::origin(), case.train.sun_tooth_angle());
     let strokes = vec![

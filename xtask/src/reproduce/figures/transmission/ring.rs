@@ -46,7 +46,13 @@ fn engagement(vibration: &Vibration) -> anyhow::Result<(f64, f64)> {
 }
 
 /// Healthy and one damaged signal near the engagement.
-fn close_ups(drawn: &mut Drawn, vibration: &Vibration, signals: &[(&State, &'static str, Vec<f64>)], first_letter: u8, what: &str) -> anyhow::Result<()> {
+fn close_ups(
+    drawn: &mut Drawn,
+    vibration: &Vibration,
+    signals: &[(&State, &'static str, Vec<f64>)],
+    first_letter: u8,
+    what: &str,
+) -> anyhow::Result<()> {
     const LETTERS: [&str; 6] = ["a", "b", "c", "d", "e", "f"];
     let begin = engagement(vibration)?.0;
     let shown = (begin - AROUND.0, begin + AROUND.1);
@@ -75,12 +81,17 @@ fn boxed(mut panel: Panel, vibration: &Vibration) -> anyhow::Result<Panel> {
 pub fn accelerations(context: &Context) -> anyhow::Result<Drawn> {
     let vibration = context.vibration(RING)?;
     let sensor = beside(&vibration)?;
-    let signals: Vec<_> =
-        coloured(&vibration.states, &RING_COLOURS).into_iter().map(|(s, colour)| (s, colour, s.shown[sensor].clone())).collect();
+    let signals: Vec<_> = coloured(&vibration.states, &RING_COLOURS)
+        .into_iter()
+        .map(|(s, colour)| (s, colour, s.shown[sensor].clone()))
+        .collect();
     let mut drawn = Drawn::default();
     // the largest damage lies lowest, so that all show
-    let all = signals.iter().rev().map(|(s, colour, x)| solid(&s.key(), colour, vibration.clock.over_turns(x))).collect();
-    drawn.panels.push(boxed(time_panel("a", "Three turns of the carrier, sensor beside the damaged tooth.", all), &vibration)?);
+    let all =
+        signals.iter().rev().map(|(s, colour, x)| solid(&s.key(), colour, vibration.clock.over_turns(x))).collect();
+    drawn
+        .panels
+        .push(boxed(time_panel("a", "Three turns of the carrier, sensor beside the damaged tooth.", all), &vibration)?);
     close_ups(&mut drawn, &vibration, &signals, 1, "Accelerations")?;
     drawn.panels.push(model::cracked_tooth(context, RING, "e", "Root cracks of the ring tooth.", RING_COLOURS)?);
     drawn.note(MODEL);
@@ -93,7 +104,8 @@ pub fn exact_differences(context: &Context) -> anyhow::Result<Drawn> {
     let signals = exact(&vibration)?;
     let states: Vec<_> = coloured(&vibration.states, &RING_COLOURS).into_iter().skip(1).zip(&signals).collect();
     let mut drawn = Drawn::default();
-    let lines = states.iter().rev().map(|((s, colour), x)| solid(&s.key(), colour, vibration.clock.over_turns(x))).collect();
+    let lines =
+        states.iter().rev().map(|((s, colour), x)| solid(&s.key(), colour, vibration.clock.over_turns(x))).collect();
     drawn.panels.push(time_panel("a", "Exact difference signals of the planet-pass average.", lines));
     let mut spectra = Vec::new();
     for ((state, colour), signal) in states.iter().rev() {
@@ -126,7 +138,8 @@ fn approximate<'a>(vibration: &'a Vibration, pairs: usize) -> anyhow::Result<Vec
 
 fn approximate_panel(vibration: &Vibration, letter: &'static str, about: &str, pairs: usize) -> anyhow::Result<Panel> {
     let signals = approximate(vibration, pairs)?;
-    let lines = signals.iter().rev().map(|(s, colour, x)| solid(&s.key(), colour, vibration.clock.over_turns(x))).collect();
+    let lines =
+        signals.iter().rev().map(|(s, colour, x)| solid(&s.key(), colour, vibration.clock.over_turns(x))).collect();
     boxed(time_panel(letter, about, lines), vibration)
 }
 
@@ -159,7 +172,8 @@ pub fn fm4_table(context: &Context) -> anyhow::Result<Drawn> {
         }
         rows.push(row);
     }
-    let least = exact.iter().map(|x| kurtosis(x)).collect::<Result<Vec<_>, _>>()?.into_iter().fold(f64::INFINITY, f64::min);
+    let least =
+        exact.iter().map(|x| kurtosis(x)).collect::<Result<Vec<_>, _>>()?.into_iter().fold(f64::INFINITY, f64::min);
     drawn.claim("exact differences tell every crack", least > FM4_THRESHOLD, format!("least FM4 {least:.1}"));
     drawn.tables.push(Table { head: ["crack", "FM4, approximate", "FM4, exact"].map(String::from).to_vec(), rows });
     drawn.note(MODEL);
@@ -177,7 +191,9 @@ pub fn more_sidebands(context: &Context) -> anyhow::Result<Drawn> {
     const PATTERNS: [Pattern; 4] = [Pattern::Squares, Pattern::Circles, Pattern::Crosses, Pattern::Dashed];
     let mut lines = Vec::new();
     let mut rising = Vec::new();
-    for (index, ((state, colour), pattern)) in coloured(&vibration.states, &RING_COLOURS).into_iter().zip(PATTERNS).enumerate() {
+    for (index, ((state, colour), pattern)) in
+        coloured(&vibration.states, &RING_COLOURS).into_iter().zip(PATTERNS).enumerate()
+    {
         let mut values = Vec::new();
         for pairs in 0..=MOST_PAIRS {
             values.push((pairs as f64, kurtosis(&approximate(&vibration, pairs)?[index].2)?));
@@ -208,11 +224,15 @@ pub fn around_the_housing(context: &Context) -> anyhow::Result<Drawn> {
         let key = state.key();
         let exact: Vec<(f64, f64)> = state.around.iter().map(|s| (s.angle, s.exact[1])).collect();
         let approximate = state.around.iter().map(|s| (s.angle, s.approximate)).collect();
-        let least = exact.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1)).context("no sensors around the housing")?;
+        let least =
+            exact.iter().copied().min_by(|a, b| a.1.total_cmp(&b.1)).context("no sensors around the housing")?;
         overall = overall.min(least.1);
         drawn.value(format!("{key}, least FM4"), least.1);
         drawn.value(format!("{key}, angle of the least FM4"), least.0.rem_euclid(360.0));
-        let rings = vec![("exact".to_owned(), RED, exact), ("approximate".to_owned(), BLUE, approximate)];
+        let rings = vec![
+            Ring { name: "exact".into(), colour: RED, points: exact },
+            Ring { name: "approximate".into(), colour: BLUE, points: approximate },
+        ];
         drawn.panels.push(polar(letter, &format!("ln FM4 about the housing, crack of {key}."), rings, FM4_THRESHOLD));
     }
     drawn.claim("every sensor tells every crack", overall > FM4_THRESHOLD, format!("least FM4 {overall:.2}"));
@@ -228,18 +248,22 @@ pub fn elsewhere(context: &Context) -> anyhow::Result<Drawn> {
     let mut drawn = Drawn::default();
     for (letter, percent) in [("a", 20.0), ("b", 50.0)] {
         let states = vibration.damaged().iter().filter(|s| s.percent == percent);
-        let rings: Vec<(String, &'static str, Vec<(f64, f64)>)> = states
+        let rings: Vec<Ring> = states
             .zip(colours)
             .map(|(state, colour)| {
                 let points = state.around.iter().map(|s| (s.angle, s.exact[1])).collect();
-                (state.label.clone(), colour, points)
+                Ring { name: state.label.clone(), colour, points }
             })
             .collect();
         ensure!(rings.len() == colours.len(), "the case has not three cracks of {percent} %");
-        let values = || rings.iter().flat_map(|r| &r.2).map(|p| p.1);
+        let values = || rings.iter().flat_map(|r| &r.points).map(|p| p.1);
         let least = values().fold(f64::INFINITY, f64::min);
         drawn.value(format!("{percent:.0} %, least FM4"), least);
-        drawn.claim(format!("{percent:.0} % told at every place"), least > FM4_THRESHOLD, format!("least FM4 {least:.2}"));
+        drawn.claim(
+            format!("{percent:.0} % told at every place"),
+            least > FM4_THRESHOLD,
+            format!("least FM4 {least:.2}"),
+        );
         let about = format!("ln FM4 of the exact difference signal about the housing, crack of {percent:.0} %.");
         drawn.panels.push(polar(letter, &about, rings, FM4_THRESHOLD));
     }

@@ -25,7 +25,8 @@ fn exact(vibration: &Vibration, over: Average) -> anyhow::Result<Vec<Vec<f64>>> 
 
 fn difference_panel(vibration: &Vibration, letter: &'static str, about: &str, signals: &[Vec<f64>]) -> Panel {
     let states = coloured(&vibration.states, &SUN_COLOURS).into_iter().skip(1).zip(signals);
-    let lines: Vec<Line> = states.map(|((s, colour), x)| solid(&s.key(), colour, vibration.clock.over_turns(x))).collect();
+    let lines: Vec<Line> =
+        states.map(|((s, colour), x)| solid(&s.key(), colour, vibration.clock.over_turns(x))).collect();
     time_panel(letter, about, lines.into_iter().rev().collect())
 }
 
@@ -42,7 +43,9 @@ pub fn accelerations(context: &Context) -> anyhow::Result<Drawn> {
     drawn.value("engagements of the damaged tooth in a carrier cycle", in_a_turn as f64);
     let lines = |range: (f64, f64)| -> Vec<Line> {
         let states = coloured(&vibration.states, &SUN_COLOURS).into_iter().rev();
-        states.map(|(s, colour)| solid(&s.key(), colour, over_turns(&vibration.clock, &s.shown[sensor], range))).collect()
+        states
+            .map(|(s, colour)| solid(&s.key(), colour, over_turns(&vibration.clock, &s.shown[sensor], range)))
+            .collect()
     };
     drawn.panels.push(time_panel("a", "Three turns of the carrier.", lines((0.0, 3.0))));
     let at = engagements.get(SHOWN.0).context("too few engagements")?;
@@ -63,7 +66,11 @@ pub fn approximate_differences(context: &Context) -> anyhow::Result<Drawn> {
             let signal = vibration.clock.approximate(&state.shown[sensor], over, 1)?;
             lines.push(solid(&state.key(), colour, vibration.clock.over_turns(&signal)));
         }
-        drawn.panels.push(time_panel(letter, &format!("Approximate difference signals of the {}.", over.name()), lines));
+        drawn.panels.push(time_panel(
+            letter,
+            &format!("Approximate difference signals of the {}.", over.name()),
+            lines,
+        ));
     }
     drawn.note(MODEL);
     Ok(drawn)
@@ -130,7 +137,11 @@ pub fn fm4(context: &Context) -> anyhow::Result<Drawn> {
     drawn.value("exact, least FM4 over the threshold", 100.0 * (least / FM4_THRESHOLD - 1.0));
     let panel = Panel::chart("b", "Exact difference signals.", labels, lines);
     drawn.panels.push(panel.mark(threshold(FM4_THRESHOLD, "")));
-    drawn.claim("unaltered and carrier averages tell every crack", least > FM4_THRESHOLD, format!("least FM4 {least:.2}"));
+    drawn.claim(
+        "unaltered and carrier averages tell every crack",
+        least > FM4_THRESHOLD,
+        format!("least FM4 {least:.2}"),
+    );
     drawn.note(MODEL);
     Ok(drawn)
 }
@@ -145,11 +156,16 @@ pub fn around_the_housing(context: &Context) -> anyhow::Result<Drawn> {
         let rings: Vec<_> = states
             .map(|(state, colour)| {
                 let points: Vec<(f64, f64)> = state.around.iter().map(|s| (s.angle, s.exact[average])).collect();
-                (state.key(), colour, points)
+                Ring { name: state.key(), colour, points }
             })
             .collect();
-        least = rings.iter().flat_map(|r| &r.2).map(|p| p.1).fold(least, f64::min);
-        drawn.panels.push(polar(letter, &format!("ln FM4 of the exact difference signal about the housing, {about}."), rings, FM4_THRESHOLD));
+        least = rings.iter().flat_map(|r| &r.points).map(|p| p.1).fold(least, f64::min);
+        drawn.panels.push(polar(
+            letter,
+            &format!("ln FM4 of the exact difference signal about the housing, {about}."),
+            rings,
+            FM4_THRESHOLD,
+        ));
     }
     drawn.value("exact, least FM4 around the housing over the threshold", 100.0 * (least / FM4_THRESHOLD - 1.0));
     drawn.claim("every sensor tells every crack", least > FM4_THRESHOLD, format!("least FM4 {least:.2}"));
