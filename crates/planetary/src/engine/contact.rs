@@ -67,6 +67,8 @@ const TOLERANCE: f64 = 1e-13;
 const NEARER: f64 = 0.5;
 /// Residual, relative to the same, below which one that no longer falls is rounding.
 const ROUNDING: f64 = 1e-9;
+/// Residual, relative to the terms it is a sum of, that is their rounding.
+const CANCELLATION: f64 = 1e-14;
 /// Smallest pivot of `1 + W K` against its diagonal: it cannot be small, this only refuses numbers out of range.
 const PIVOT: f64 = 1e-14;
 
@@ -91,10 +93,17 @@ impl Problem<'_> {
             (out.forces[i], out.slopes[i]) = self.touches[i].force(x[i]);
         }
         let mut worst = 0.0_f64;
+        out.terms = 0.0;
         for i in 0..n {
-            let sum: f64 = (0..n).map(|j| self.compliance.at(i, j) * (out.forces[j] - self.before[j])).sum();
+            let (mut sum, mut terms) = (0.0, self.free[i].abs());
+            for j in 0..n {
+                let term = self.compliance.at(i, j) * (out.forces[j] - self.before[j]);
+                sum += term;
+                terms += term.abs();
+            }
             out.residual[i] = x[i] - self.free[i] + sum;
             worst = worst.max(out.residual[i].abs());
+            out.terms = out.terms.max(terms);
         }
         worst
     }
@@ -119,6 +128,11 @@ impl Problem<'_> {
     fn size(&self, x: &[f64]) -> f64 {
         x.iter().fold(self.scale, |most, x| most.max(x.abs()))
     }
+
+    /// Whether a residual is rounding.
+    fn is_rounding(&self, x: &[f64], now: &Evaluation, worst: f64) -> bool {
+        worst <= (ROUNDING * self.size(x)).max(CANCELLATION * now.terms)
+    }
 }
 
 #[derive(Clone)]
@@ -126,12 +140,14 @@ struct Evaluation {
     forces: Vec<f64>,
     slopes: Vec<f64>,
     residual: Vec<f64>,
+    /// Size of what the residual is a sum of (m).
+    terms: f64,
 }
 
 /// Forces.
 pub(super) fn solve(problem: &Problem<'_>, forces: &mut [f64]) -> ContactReport {
     let n = problem.free.len();
-    let mut now = Evaluation { forces: vec![0.0; n], slopes: vec![0.0; n], residual: vec![0.0; n] };
+    let mut now = Evaluation { forces: vec![0.0; n], slopes: vec![0.0; n], residual: vec![0.0; n], terms: 0.0 };
     let mut x = problem.free.to_vec();
     let mut worst = problem.evaluate(&x, &mut now);
     let mut report = ContactReport::default();
@@ -139,7 +155,7 @@ pub(super) fn solve(problem: &Problem<'_>, forces: &mut [f64]) -> ContactReport 
     let mut held = problem.before.to_vec();
     for _ in 0..MOST_ROUNDS {
         newton(problem, &mut x, &mut held, &mut now, &mut worst, &mut report);
-        report.is_solved = worst <= ROUNDING * problem.size(&x);
+        report.is_solved = problem.is_rounding(&x, &now, worst);
         if report.is_solved {
             break;
         }
@@ -209,7 +225,7 @@ fn newton(
             }
         }
         let (next, reached, _) = found;
-        if !(reached < *worst) && *worst <= ROUNDING * problem.size(x) {
+        if !(reached < *worst) && problem.is_rounding(x, now, *worst) {
             return;
         }
         held.iter_mut().zip(&change).for_each(|(held, change)| *held += length * change);
@@ -223,7 +239,7 @@ fn newton(
 mod tests {
     use std::sync::Arc;
 
-    use rand::{Rng, SeedableRng};
+    use rand::{RngExt, SeedableRng};
 
     use super::*;
     use crate::mesh::LinearMesh;
