@@ -10,6 +10,7 @@ mod docs;
 mod reproduce;
 mod scene_costs;
 mod stability;
+mod train;
 mod work_precision;
 
 #[derive(Parser)]

@@ -305,8 +305,9 @@ fn extreme_speeds_loads_and_stiffnesses() {
                 let run = run(&spec, &request);
                 let size = run.state.position.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
                 let stats = run.stats;
+                // what is left is the rounding of compliance times force, terms larger than the displacements they add up to: millinewtons of 1e7 N
                 assert!(
-                    stats.worst_residual <= 1e-11 * size,
+                    stats.worst_residual <= 1e-10 * size,
                     "{sun_rpm} rpm, {torque} N m, {stiffness:e} N/m: {size} {stats:?}"
                 );
                 assert!(stats.newton_iterations <= 30 * stats.steps, "{stats:?}");

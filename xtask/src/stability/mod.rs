@@ -11,6 +11,7 @@ mod lumped;
 #[path = "../../../crates/fecm/tests/common/proportions.rs"]
 mod pairs;
 mod statics;
+mod transmission;
 
 use std::fmt::Write as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -162,6 +163,10 @@ fn is_typed(error: &anyhow::Error) -> bool {
         || error.is::<fecm::FecmError>()
         || error.is::<lpm::LpmError>()
         || error.is::<::hums::HumsError>()
+        || error.is::<gear_geom::TrainError>()
+        || error.is::<planetary::PlanetaryError>()
+        || error.is::<planetary::mesh::MeshError>()
+        || error.is::<planetary::housing::HousingError>()
 }
 
 /// Runs all cases and writes the report.
@@ -170,8 +175,15 @@ fn is_typed(error: &anyhow::Error) -> bool {
 /// Cases that fail, after the report is written; the file system's.
 pub fn run() -> anyhow::Result<()> {
     let clock = Instant::now();
-    let parts: [fn() -> Table; 6] =
-        [geometry::cases, statics::cases, damage::cases, dynamics::cases, lumped::cases, hums::cases];
+    let parts: [fn() -> Table; 7] = [
+        geometry::cases,
+        statics::cases,
+        damage::cases,
+        dynamics::cases,
+        lumped::cases,
+        hums::cases,
+        transmission::cases,
+    ];
     let mut text = String::new();
     let (mut cases, mut refused, mut failed) = (0, 0, 0);
     for part in parts {

@@ -6,6 +6,7 @@ mod dynamics_lumped;
 mod hums;
 mod report;
 mod statics;
+mod transmission;
 
 use clap::ValueEnum;
 
@@ -22,6 +23,8 @@ pub enum Study {
     DynamicsLumped,
     /// Interpolation of synchronous averages, windows and segments of spectra.
     Hums,
+    /// Time steps, mesh tables and housing of a planetary transmission.
+    Transmission,
 }
 
 /// Runs a study, or all of them one after the other, and writes their reports.
@@ -35,5 +38,6 @@ pub fn run(study: Option<Study>) -> anyhow::Result<()> {
         Study::Dynamics => dynamics::run(),
         Study::DynamicsLumped => dynamics_lumped::run(),
         Study::Hums => hums::run(),
+        Study::Transmission => transmission::run(),
     }
 }

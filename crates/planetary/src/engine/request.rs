@@ -126,7 +126,7 @@ pub struct TransmissionStats {
     pub steps: usize,
     /// Newton iterations over meshes.
     pub newton_iterations: usize,
-    /// Steps that needed the fallback.
+    /// Steps at which Newton's method had to go back along its way.
     pub fallbacks: usize,
     /// Worst residual of a mesh: approach not accounted for (m).
     pub worst_residual: f64,

@@ -125,6 +125,10 @@ impl<'a> Runner<'a> {
         let history =
             History { load: &load, velocity: &lag, expected: &expected, speed: self.speed, forces: &state.connection };
         let done = step(system, &self.operator, place, &history)?;
+        if !done.report.is_solved {
+            let what = "no forces of the meshes were found that fit their approaches";
+            return Err(PlanetaryError::Lost { step: next, cycle: place.travelled, what });
+        }
         let (mut velocity, mut acceleration) = (Vec::with_capacity(size), Vec::with_capacity(size));
         for i in 0..size {
             let (rate, change) = weights.end([q[i], done.position[i]], v[i], a[i]);
@@ -139,7 +143,7 @@ impl<'a> Runner<'a> {
         force.iter_mut().zip(&external).for_each(|(force, external)| *force += external);
         self.stats.steps += 1;
         self.stats.newton_iterations += done.report.iterations;
-        self.stats.fallbacks += usize::from(done.report.fallback);
+        self.stats.fallbacks += usize::from(done.report.searched);
         self.stats.worst_residual = self.stats.worst_residual.max(done.report.residual);
         self.approaches = done.approaches;
         self.state = TransmissionState {

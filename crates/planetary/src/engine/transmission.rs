@@ -115,6 +115,11 @@ impl Transmission {
         let (mut imbalance, mut least_imbalance, mut stalled) = (f64::INFINITY, f64::INFINITY, 0);
         for iteration in 1..=MOST_PROXIMAL {
             let next = proximal(rho, &position, &forces)?;
+            // too far at once
+            if !next.report.is_solved {
+                rho /= factor;
+                continue;
+            }
             let moved: Vec<f64> = next.position.iter().zip(&position).map(|(a, b)| a - b).collect();
             let moved = self.masses_times(&moved).iter().zip(&moved).map(|(a, b)| a * b).sum::<f64>().sqrt();
             imbalance = rho * moved;
@@ -124,8 +129,9 @@ impl Transmission {
             }
             stalled = if imbalance < 0.5 * least_imbalance { 0 } else { stalled + 1 };
             least_imbalance = least_imbalance.min(imbalance);
-            let wanted = if stalled < STALLED { REST[0] } else { REST[1] };
-            if rho <= least && imbalance <= wanted * size {
+            let is_rounding = rho <= least && stalled >= STALLED;
+            let wanted = if is_rounding { REST[1] } else { REST[0] };
+            if imbalance <= wanted * size {
                 let [first, last] = POLISH;
                 let next = proximal(first, &position, &forces)?;
                 return Ok(self.at_rest(proximal(last, &next.position, &next.forces)?, &external, iteration));

@@ -3,6 +3,8 @@
 //! Processor time of the whole process on all threads (Linux: `/proc/self/stat`), because other work on the machine lengthens wall time. A
 //! measurement is repeated until it has taken a second; the table has the mean.
 
+mod transmission;
+
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -32,7 +34,7 @@ struct Saving {
 /// Processor time and a result to compare.
 struct Measured {
     seconds: f64,
-    /// Largest transmission error (um), or not comparable.
+    /// Largest transmission error (um), largest force of a mesh (N), or not comparable.
     error: Option<f64>,
 }
 
@@ -105,7 +107,8 @@ pub fn run() -> anyhow::Result<()> {
             without: motion(&case, &model, without)?,
         });
     }
-    std::fs::write(root.join(REPORT), report(&savings, &model))
+    let of_transmissions = transmission::savings()?;
+    std::fs::write(root.join(REPORT), report(&savings, &model, &of_transmissions))
         .with_context(|| format!("{REPORT} cannot be written"))?;
     println!("wrote {REPORT}");
     Ok(())
@@ -120,7 +123,7 @@ fn statics(case: &SpurPairCase, pair: &GearPair, options: &PairModelOptions) -> 
     };
     measured(|| {
         let series = PairModel::new(pair, options)?.solve(&request, &())?;
-        Ok(series.results[0].iter().map(|r| r.static_transmission_error).reduce(f64::max))
+        Ok(series.results[0].iter().map(|r| 1e6 * r.static_transmission_error).reduce(f64::max))
     })
 }
 
@@ -175,7 +178,7 @@ fn motion(case: &SpurPairCase, model: &PairModel, (modes, memory): (usize, usize
     measured(|| {
         let run = PairDynamics::new(model, &options)?.run(&request, 50 * CYCLES, &())?;
         let last = &run.records[run.records.len() - 50..];
-        Ok(last.iter().map(|r| r.transmission_error).reduce(f64::max))
+        Ok(last.iter().map(|r| 1e6 * r.transmission_error).reduce(f64::max))
     })
 }
 
@@ -186,7 +189,7 @@ fn measured(task: impl Fn() -> anyhow::Result<Option<f64>>) -> anyhow::Result<Me
         runs += 1;
         let spent = processor_time()? - start;
         if spent >= 1.0 {
-            return Ok(Measured { seconds: spent / f64::from(runs), error: value.map(|v| 1e6 * v) });
+            return Ok(Measured { seconds: spent / f64::from(runs), error: value });
         }
     }
 }
@@ -200,28 +203,14 @@ fn processor_time() -> anyhow::Result<f64> {
     Ok((ticks(14)? + ticks(15)?) / TICKS)
 }
 
-fn report(savings: &[Saving], model: &PairModel) -> String {
+fn report(savings: &[Saving], model: &PairModel, of_transmissions: &[Saving]) -> String {
     let mut out = String::from(
         "# What a scene leaves out, and what that saves\n\n\
-         Written by `cargo xtask scene-costs`: the nonunity pair of `configs/nonunity-pair.toml`, the same question with and without. Processor time, all\n\
-         threads together. The largest transmission error (in motion: over the last cycle) says what leaving out changes.\n\n\
-         | left out | when | asked | with (s) | without (s) | saves | largest error with / without (µm) |\n|---|---|---|---|---|---|---|\n",
+         Written by `cargo xtask scene-costs`: the same question with and without. Processor time, all threads together.\n\n\
+         ## Pairs of gears\n\n\
+         The nonunity pair of `configs/nonunity-pair.toml`. The largest transmission error (in motion: over the last cycle) says what leaving out changes.\n\n",
     );
-    for s in savings {
-        let errors = match (s.with.error, s.without.error) {
-            (Some(with), Some(without)) => format!("{with:.3} / {without:.3}"),
-            _ => String::new(),
-        };
-        let (with, without) = (s.with.seconds, s.without.seconds);
-        let _ = writeln!(
-            out,
-            "| {} | {} | {} | {with:.3} | {without:.3} | {:.0} % | {errors} |",
-            s.left_out,
-            s.when,
-            s.asked,
-            100.0 * (1.0 - without / with)
-        );
-    }
+    rows(&mut out, savings, "largest error", "µm");
     let stats = model.stats();
     let teeth = model.pairing().pair().pinion().teeth();
     let _ = write!(
@@ -229,8 +218,36 @@ fn report(savings: &[Saving], model: &PairModel) -> String {
         "\nNot in the table because there is no other way to compute here: teeth that are alike are one tooth. Of the pinion, one sector of {} unknowns is\n\
          factored instead of {teeth}, and {} remain on its cuts.\n\n\
          A scene also does without what its case file does not ask for: no force-deflection map, no plots (`output.plots = false`), no ParaView files\n\
-         (`output.vtu = false`). Nothing is kept on disk between runs: with condensation at a few tenths of a second there is nothing worth caching.\n",
+         (`output.vtu = false`). Condensations of gears are not kept on disk between runs: at a few tenths of a second there is nothing worth keeping. Mesh tables and housings of transmissions are.\n",
         stats.pinion.sector_unknowns, stats.pinion.cut_unknowns
     );
+    out.push_str(
+        "\n## Transmissions\n\n\
+         The dissertation's transmission (chapter 5) in the default housing. The largest force of a mesh of the planetary stage says what leaving out changes.\n\n",
+    );
+    rows(&mut out, of_transmissions, "largest force", "N");
     out
+}
+
+fn rows(out: &mut String, savings: &[Saving], quantity: &str, unit: &str) {
+    let _ = writeln!(
+        out,
+        "| left out | when | asked | with (s) | without (s) | saves | {quantity} with / without ({unit}) |\n|---|---|---|---|---|---|---|"
+    );
+    for s in savings {
+        let decimals = if unit == "N" { 0 } else { 3 };
+        let values = match (s.with.error, s.without.error) {
+            (Some(with), Some(without)) => format!("{with:.decimals$} / {without:.decimals$}"),
+            _ => String::new(),
+        };
+        let (with, without) = (s.with.seconds, s.without.seconds);
+        let _ = writeln!(
+            out,
+            "| {} | {} | {} | {with:.3} | {without:.3} | {:.0} % | {values} |",
+            s.left_out,
+            s.when,
+            s.asked,
+            100.0 * (1.0 - without / with)
+        );
+    }
 }
