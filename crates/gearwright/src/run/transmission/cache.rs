@@ -1,11 +1,12 @@
 //! Mesh tables and reduced housings on disc, beside the results, found again by what they depend on.
 //!
-//! A file is named by a fingerprint of everything that went into it, the version of the program included; it appears complete or not at all. One that
+//! A file is named by a fingerprint of everything that went into it, the program itself included; it appears complete or not at all. One that
 //! cannot be read is as none. The folder may be deleted at any time.
 
 use std::fmt::Debug;
 use std::io::{BufReader, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -65,13 +66,24 @@ fn keep(folder: &Path, file: &Path, content: &impl Serialize) -> anyhow::Result<
     Ok(())
 }
 
-/// FNV-1a of all that a result depends on.
+/// FNV-1a of all that a result depends on: what is computed, and the program that computes it.
 fn fingerprint(key: &dyn Debug) -> u64 {
-    let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
-    for byte in format!("{} {key:?}", env!("CARGO_PKG_VERSION")).bytes() {
-        hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-    }
-    hash
+    fnv(program(), format!("{key:?}").as_bytes())
+}
+
+/// Fingerprint of the running program; of its version where it cannot be read.
+fn program() -> u64 {
+    static PROGRAM: OnceLock<u64> = OnceLock::new();
+    *PROGRAM.get_or_init(|| {
+        let own = std::env::current_exe().and_then(std::fs::read);
+        fnv(FNV_BASIS, own.as_deref().unwrap_or(env!("CARGO_PKG_VERSION").as_bytes()))
+    })
+}
+
+const FNV_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
+
+fn fnv(basis: u64, bytes: &[u8]) -> u64 {
+    bytes.iter().fold(basis, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
 #[cfg(test)]
