@@ -57,7 +57,7 @@ pub enum PlanetaryError {
         /// Forces out of balance, relative to the load.
         imbalance: f64,
     },
-    /// The motion has left the range of numbers, or a mesh its base pitch.
+    /// The motion has left the range of numbers, or teeth are pushed into each other by more than a base pitch.
     #[error("the motion is lost at step {step} (mesh cycle {cycle:.3}): {what}")]
     Lost {
         /// Step.

@@ -139,6 +139,11 @@ impl<'a> Runner<'a> {
             let what = "numbers out of range";
             return Err(PlanetaryError::Lost { step: next, cycle: place.travelled, what });
         }
+        let pressed = done.approaches.iter().zip(&system.flanks).map(|(approach, flank)| approach - flank.backlash);
+        if pressed.fold(0.0, f64::max) > system.base_pitch {
+            let what = "teeth are pushed into each other by more than a base pitch: nothing is small any more";
+            return Err(PlanetaryError::Lost { step: next, cycle: place.travelled, what });
+        }
         let mut force = done.generalised;
         force.iter_mut().zip(&external).for_each(|(force, external)| *force += external);
         self.stats.steps += 1;

@@ -131,6 +131,8 @@ pub(super) struct System {
     /// Row of the prescribed rotation.
     pub drive: Option<usize>,
     pub ring_teeth: f64,
+    /// Base pitch of the planetary stage (m).
+    pub base_pitch: f64,
     pub sensors: Vec<(String, Vec<f64>)>,
 }
 
@@ -200,6 +202,7 @@ impl System {
             meshes,
             drive,
             ring_teeth: f64::from(spec.stage.ring_teeth),
+            base_pitch: std::f64::consts::TAU * spec.stage.ring_base_radius / f64::from(spec.stage.ring_teeth),
             sensors: housing
                 .map(|housing| {
                     housing.sensors.iter().map(|sensor| (sensor.name.clone(), sensor.shape.clone())).collect()
