@@ -5,7 +5,7 @@ use std::path::Path;
 
 use fecm::statics::{PairModel, PositionResult, StaticsRequest};
 use gear_geom::{Damage, FlankSide, Pit, ProfileMeasure, RootCrack, ToothDamage};
-use gearwright::case::{self, SpurPairCase};
+use gearwright_case::{self as case, SpurPairCase};
 
 fn load(name: &str) -> SpurPairCase {
     case::load_spur_pair(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../configs").join(name)).unwrap()

@@ -12,7 +12,7 @@ use fecm::dynamics::{
     Support,
 };
 use fecm::statics::{PairModel, StaticsRequest};
-use gearwright::case;
+use gearwright_case as case;
 use lpm::{Curve, Excitation, GearPair, Input, Interpolation, Model, Sampling, SteadyOptions, Supports};
 
 const TORQUE: f64 = 424.0;

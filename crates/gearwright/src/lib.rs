@@ -1,8 +1,7 @@
-//! The gearwright application: case files in, result files out.
+//! The gearwright application: case files (`gearwright-case`) in, result files out.
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`case`] | case files: schema, checks with lines, resolution to SI units |
 //! | [`run`] | a case from start to published results |
 //! | [`output`] | tables, summary, ParaView files, the results folder |
 //! | [`plot`] | figures |
@@ -11,7 +10,7 @@
 //! A case, from text to gears in mesh; [`run::run`] would compute it into a folder:
 //!
 //! ```
-//! use gearwright::case::{self, Case, kind, template};
+//! use gearwright_case::{self as case, Case, kind, template};
 //!
 //! let kind = kind::find("spur-pair").ok_or("no such kind")?;
 //! let text = template::commented(kind);
@@ -24,7 +23,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod case;
 pub mod cli;
 pub mod output;
 pub mod plot;

@@ -184,7 +184,7 @@ fn interrupted_runs_go_on_with_the_same_bits() {
     let scratch = Scratch::with_pair();
     let content = format!("{CASE}[output]\nplots = false\n[checkpoint]\nevery_steps = 170\n");
     let (whole, summary) = scratch.run("whole", &content);
-    let case = gearwright::case::load(&scratch.path().join("whole.toml")).unwrap();
+    let case = gearwright_case::load(&scratch.path().join("whole.toml")).unwrap();
     let target = scratch.path().join("pieces");
     let checkpoint = scratch.path().join("pieces.checkpoint.json");
     // in the healthy transient, in the damaged transient, in a record: each goes on where the one before was stopped

@@ -16,7 +16,7 @@ use fecm::FaceModel;
 use fecm::mesh::SectorMesh;
 use fecm::statics::{PairModel, PositionResult, StaticsRequest};
 use gear_geom::{Damage, Member, RootCrack, ToothDamage};
-use gearwright::case::{self, SpurPairCase};
+use gearwright_case::{self as case, SpurPairCase};
 
 /// Cases, root crack of the pinion's tooth 0 (fraction of the chord), and mesh cycles (pair 0 at its pitch point at 0).
 const SCENES: [(&str, f64, &[f64]); 3] = [

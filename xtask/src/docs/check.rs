@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use clap::Parser;
-use gearwright::case::{self, kind, template};
 use gearwright::cli::Cli;
+use gearwright_case::{self as case, kind, template};
 
 use super::Fault;
 use super::page::{Block, Page};

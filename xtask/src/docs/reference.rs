@@ -3,8 +3,8 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use gearwright::case::kind::{CaseKind, KINDS};
-use gearwright::case::reference::{KeyReference, keys};
+use gearwright_case::kind::{CaseKind, KINDS};
+use gearwright_case::reference::{KeyReference, keys};
 
 /// Folder of the pages, from the root of the repository.
 const FOLDER: &str = "docs/reference";

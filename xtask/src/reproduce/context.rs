@@ -6,10 +6,10 @@ use std::rc::Rc;
 
 use anyhow::{Context as _, bail};
 use gear_geom::MeshSite;
-use gearwright::case::{self, Case, SpurPairCase, TransmissionCase};
 use gearwright::output::lumped_summary::Times;
 use gearwright::run::lumped_pair::analyses::{self, Findings};
 use gearwright::run::lumped_pair::states::{self, State};
+use gearwright_case::{self as case, Case, SpurPairCase, TransmissionCase};
 
 use super::dynamics::Dynamics;
 use super::statics::{self, Statics};

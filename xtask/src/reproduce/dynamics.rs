@@ -11,7 +11,7 @@ use fecm::dynamics::{
     Support,
 };
 use fecm::statics::PairModel;
-use gearwright::case::SpurPairCase;
+use gearwright_case::SpurPairCase;
 use serde::{Deserialize, Serialize};
 
 use super::statics::percent;

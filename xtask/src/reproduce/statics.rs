@@ -3,7 +3,7 @@
 use anyhow::{Context as _, anyhow};
 use fecm::statics::{PairModel, PositionResult, StaticsRequest, StaticsSeries};
 use gear_geom::Damage;
-use gearwright::case::SpurPairCase;
+use gearwright_case::SpurPairCase;
 use serde::{Deserialize, Serialize};
 
 /// One tooth pair at a position.

@@ -22,7 +22,7 @@ const COMPUTING: [&str; 11] = [
     "crates/lpm/src",
     "crates/hums/src",
     "crates/planetary/src",
-    "crates/gearwright/src/case",
+    "crates/gearwright-case/src",
     "crates/gearwright/src/run",
     "xtask/src/reproduce/statics.rs",
     "xtask/src/reproduce/dynamics.rs",

@@ -2,9 +2,9 @@
 
 use anyhow::{Context as _, ensure};
 use gear_geom::{CrackLength, Damage};
-use gearwright::case::TransmissionCase;
-use gearwright::case::transmission::damage::Severity;
 use gearwright::run::transmission::{self as run, cache::Cache};
+use gearwright_case::TransmissionCase;
+use gearwright_case::transmission::damage::Severity;
 use hums::difference::{RemovalRule, exact_difference, split};
 use hums::indicator::basic::kurtosis;
 use hums::spectrum::{Spectrum, Window};

@@ -13,7 +13,7 @@ use fecm::body::{BodyOptions, GearBody};
 use fecm::dynamics::{Damping, DynamicsOptions, DynamicsRequest, PairDynamics, RotorInertia, RotorOptions, Support};
 use fecm::{FaceModel, PairModel, PairModelOptions, StaticsRequest};
 use gear_geom::{Damage, FlankSide, Gear, GearPair, RootCrack, ToothDamage};
-use gearwright::case::{self, SpurPairCase};
+use gearwright_case::{self as case, SpurPairCase};
 
 const REPORT: &str = "docs/reports/scene-costs.md";
 const POSITIONS: u32 = 20;

@@ -10,7 +10,7 @@ use std::time::Instant;
 use fecm::FaceModel;
 use fecm::statics::{PairModel, PairModelOptions, StaticsRequest};
 use gear_geom::{Damage, GearPair, Pit, ProfileMeasure, RootCrack, ToothDamage};
-use gearwright::case;
+use gearwright_case as case;
 
 use super::report::{Entry, Report};
 

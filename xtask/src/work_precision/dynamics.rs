@@ -13,7 +13,7 @@ use fecm::dynamics::{
 };
 use fecm::statics::{PairModel, PairModelOptions};
 use gear_geom::{GearPair, ToothDamage};
-use gearwright::case::{self, Case};
+use gearwright_case::{self as case, Case};
 
 use super::report::{Entry, Report};
 

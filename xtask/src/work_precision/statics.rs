@@ -10,7 +10,7 @@ use std::time::Instant;
 use fecm::FaceModel;
 use fecm::statics::{PairModel, PairModelOptions, StaticsRequest};
 use gear_geom::GearPair;
-use gearwright::case;
+use gearwright_case as case;
 
 use super::report::{Entry, Report};
 

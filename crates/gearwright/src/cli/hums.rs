@@ -8,7 +8,7 @@ use clap::Args;
 use hums::io::is_recording;
 use toml::{Table, Value};
 
-use crate::case::{self, Case, CaseFaults};
+use gearwright_case::{self as case, Case, CaseFaults};
 
 /// Name that faults of flags are told under.
 const COMMAND_LINE: &str = "command line";

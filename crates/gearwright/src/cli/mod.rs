@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::{Parser, Subcommand};
 
-use crate::case::kind::{self, CaseKind};
-use crate::case::{self, Case, reference, template};
 use crate::run;
+use gearwright_case::kind::{self, CaseKind};
+use gearwright_case::{self as case, Case, reference, template};
 
 mod hums;
 mod progress;

@@ -5,11 +5,11 @@ use std::fmt::Write as _;
 use fecm::dynamics::{ImpulseReading, MeshVibration, ROTATION, Support};
 use serde::Serialize;
 
-use crate::case::DynamicsCase;
-use crate::case::dynamics::schema::Dynamics;
-use crate::case::spur_pair::schema::SpurPair;
 use crate::run::dynamics::findings::{Blow, Difference, Response, Speed, coordinate_names, moving_coordinates};
 use crate::run::dynamics::simulate::Work;
+use gearwright_case::DynamicsCase;
+use gearwright_case::dynamics::schema::Dynamics;
+use gearwright_case::spur_pair::schema::SpurPair;
 
 /// Harmonics of the mesh frequency told.
 const HARMONICS: usize = 6;

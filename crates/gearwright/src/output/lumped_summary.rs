@@ -5,10 +5,10 @@ use std::fmt::Write as _;
 use lpm::{BranchEnd, Input, LpmError, Model, Response};
 use serde::Serialize;
 
-use crate::case::LumpedPairCase;
-use crate::case::lumped_pair::schema::LumpedPair;
 use crate::run::lumped_pair::analyses::{Findings, SweepResult};
 use crate::run::lumped_pair::states::State;
+use gearwright_case::LumpedPairCase;
+use gearwright_case::lumped_pair::schema::LumpedPair;
 
 /// Harmonics of the mesh frequency told.
 const HARMONICS: usize = 6;

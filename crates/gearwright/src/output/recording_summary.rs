@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value as Json, json};
 
-use crate::case::RecordingCase;
 use crate::run::recording::Outcome;
 use crate::run::recording::judge::Verdict;
 use crate::run::recording::measure::{Channel, Measured};
+use gearwright_case::RecordingCase;
 
 /// `summary.json`: inputs with all defaults, recordings, indicators of the last one, alarms.
 #[must_use]

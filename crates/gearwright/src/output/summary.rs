@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use super::damage::Effect;
 use super::stress::{LargestRoot, Stresses};
-use crate::case::SpurPairCase;
-use crate::case::spur_pair::schema::SpurPair;
+use gearwright_case::SpurPairCase;
+use gearwright_case::spur_pair::schema::SpurPair;
 
 /// Everything the summary holds.
 #[derive(Debug, Serialize)]

@@ -9,10 +9,10 @@ use serde::Serialize;
 use serde_json::{Value as Json, json};
 
 use super::transmission_tables::{share, statistics};
-use crate::case::TransmissionCase;
 use crate::run::transmission::findings::{Findings, State};
 use crate::run::transmission::model::{Laws, mean_force, mean_stiffness};
 use crate::run::transmission::signals::Averaging;
+use gearwright_case::TransmissionCase;
 
 /// Wall times (s).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]

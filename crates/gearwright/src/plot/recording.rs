@@ -3,10 +3,10 @@
 mod detection;
 mod polar;
 
-use crate::case::RecordingCase;
 use crate::run::recording::Outcome;
 use crate::run::recording::measure::{Channel, Detail, Row};
 use crate::run::recording::trend;
+use gearwright_case::RecordingCase;
 
 use super::{COLOURS, Chart, Line, Mark, MarkedChart, Pattern, PolarChart, thinned};
 

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use fecm::statics::Observer;
 
-use crate::case::Case;
+use gearwright_case::Case;
 
 /// Follows a run.
 pub trait RunObserver: Observer {

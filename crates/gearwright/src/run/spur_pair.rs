@@ -7,11 +7,11 @@ use anyhow::{Context, anyhow, bail};
 use fecm::statics::{PairModel, PositionResult, StaticsRequest, StaticsSeries};
 use gear_geom::Member;
 
-use crate::case::SpurPairCase;
 use crate::output::folder::ResultsFolder;
 use crate::output::stress::Stresses;
 use crate::output::{damage, geometry, summary, tables};
 use crate::plot::statics as figures;
+use gearwright_case::SpurPairCase;
 
 use super::{AsObserver, Finished, RunObserver};
 

@@ -1,9 +1,9 @@
 //! Receiver operating characteristics, and probability of detection over severity (its intervals are in the table).
 
-use crate::case::RecordingCase;
 use crate::plot::{COLOURS, Line, MarkedChart, Pattern};
 use crate::run::recording::Outcome;
 use crate::run::recording::detection::Detected;
+use gearwright_case::RecordingCase;
 
 use super::{CHANNELS, TRENDS, chart, heading};
 

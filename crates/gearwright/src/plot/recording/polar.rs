@@ -1,9 +1,9 @@
 //! Polar maps: an indicator over the angles of the sensors about the housing, as in D5.9 and D6.8 (there the natural logarithm of FM4).
 
-use crate::case::RecordingCase;
 use crate::plot::{COLOURS, Line, Pattern, PolarChart, polar};
 use crate::run::recording::Outcome;
 use crate::run::recording::measure::{Measured, Row};
+use gearwright_case::RecordingCase;
 
 /// Indicators that get a map, and whether it shows their logarithm.
 const MAPS: [(&str, &str, bool); 5] = [

@@ -10,7 +10,7 @@ use anyhow::Context;
 use serde::{Deserialize, Serialize};
 
 use super::simulate::Progress;
-use crate::case::DynamicsCase;
+use gearwright_case::DynamicsCase;
 
 /// The file of a results folder.
 #[derive(Debug)]

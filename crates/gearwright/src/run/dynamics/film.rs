@@ -9,8 +9,8 @@ use fecm::dynamics::{InitialState, PairDynamics};
 use fecm::statics::PairModel;
 
 use super::findings::Response;
-use crate::case::DynamicsCase;
 use crate::output::geometry;
+use gearwright_case::DynamicsCase;
 
 /// Steps run between writings.
 const PIECE: usize = 50;

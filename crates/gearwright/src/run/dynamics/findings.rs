@@ -6,7 +6,7 @@ use lpm::Spectrum;
 
 use super::resolution::Resolution;
 use super::simulate::{Plan, Progress, Sample, SavedState, Work};
-use crate::case::DynamicsCase;
+use gearwright_case::DynamicsCase;
 
 /// All states at one speed.
 #[derive(Debug)]

@@ -13,11 +13,11 @@ use anyhow::{Context, anyhow, bail};
 use fecm::dynamics::{ImpulseSpec, PairDynamics};
 use fecm::statics::PairModel;
 
-use crate::case::DynamicsCase;
-use crate::case::lumped_pair::resolve::HEALTHY;
 use crate::output::folder::ResultsFolder;
 use crate::output::{dynamics_summary as summary, dynamics_tables as tables};
 use crate::plot::dynamics as figures;
+use gearwright_case::DynamicsCase;
+use gearwright_case::lumped_pair::resolve::HEALTHY;
 
 use super::{AsObserver, Finished, RunObserver};
 use checkpoint::Checkpoint;

@@ -7,7 +7,7 @@ use anyhow::Context;
 use fecm::dynamics::{Integrator, MeshVibration, PairDynamics};
 use fecm::statics::PairModel;
 
-use crate::case::DynamicsCase;
+use gearwright_case::DynamicsCase;
 
 /// Error that steps chosen leave at resonance, over the motion there.
 pub const CHOSEN_ERROR: f64 = 0.025;

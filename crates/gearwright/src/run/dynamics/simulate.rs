@@ -8,7 +8,7 @@ use fecm::dynamics::{DynamicsRequest, DynamicsRun, DynamicsState, InitialState, 
 use fecm::statics::Observer;
 use serde::{Deserialize, Serialize};
 
-use crate::case::DynamicsCase;
+use gearwright_case::DynamicsCase;
 
 /// One step of a record, in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

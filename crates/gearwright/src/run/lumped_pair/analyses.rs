@@ -11,10 +11,10 @@ use lpm::{
 use rayon::prelude::*;
 
 use super::states::State;
-use crate::case::LumpedPairCase;
-use crate::case::lumped_pair::schema::{self, Direction, Start};
 use crate::output::lumped_summary::Times;
 use crate::run::RunObserver;
+use gearwright_case::LumpedPairCase;
+use gearwright_case::lumped_pair::schema::{self, Direction, Start};
 
 /// Longest step of an approach to a speed (Hz).
 const APPROACH_STEP: f64 = 50.0;

@@ -8,10 +8,10 @@ use std::time::Instant;
 
 use anyhow::anyhow;
 
-use crate::case::LumpedPairCase;
 use crate::output::folder::ResultsFolder;
 use crate::output::{lumped_summary as summary, lumped_tables as tables};
 use crate::plot::{Chart, lumped as figures};
+use gearwright_case::LumpedPairCase;
 
 use super::{Finished, RunObserver};
 use analyses::Findings;

@@ -4,10 +4,10 @@ use anyhow::{Context, anyhow, bail};
 use fecm::statics::{PairModel, StaticsRequest};
 use lpm::{Excitation, GearPair, Model};
 
-use crate::case::lumped_pair::curves::{Curves, Points};
-use crate::case::lumped_pair::resolve::{DamagedState, Damping, HEALTHY, Source};
-use crate::case::{LumpedPairCase, SpurPairCase};
 use crate::run::{AsObserver, RunObserver};
+use gearwright_case::lumped_pair::curves::{Curves, Points};
+use gearwright_case::lumped_pair::resolve::{DamagedState, Damping, HEALTHY, Source};
+use gearwright_case::{LumpedPairCase, SpurPairCase};
 
 /// A state, ready to run.
 #[derive(Debug, Clone)]

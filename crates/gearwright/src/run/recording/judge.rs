@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use hums::threshold::{Rate, mean_plus_k_sigma, quantile};
 
 use super::measure::{Measured, Row};
-use crate::case::recording::resolve::HealthyLimit;
+use gearwright_case::recording::resolve::HealthyLimit;
 
 /// An upper limit.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use super::error::RecordingError;
 use super::source::{Layout, Progress, each_block, layout};
 use super::turning::{Pulses, turning};
-use crate::case::recording::RecordingCase;
+use gearwright_case::recording::RecordingCase;
 
 /// Samples of the first period kept for the plot at most.
 const SHOWN: usize = 1 << 18;

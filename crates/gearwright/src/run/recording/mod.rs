@@ -15,11 +15,11 @@ use std::time::Instant;
 use anyhow::anyhow;
 use rayon::prelude::*;
 
-use crate::case::RecordingCase;
-use crate::case::recording::resolve::{HealthySet, LimitSource};
 use crate::output::folder::ResultsFolder;
 use crate::output::{recording as tables, recording_detection as detection_tables, recording_summary as summary};
 use crate::plot::recording as figures;
+use gearwright_case::RecordingCase;
+use gearwright_case::recording::resolve::{HealthySet, LimitSource};
 
 use self::error::RecordingError;
 use self::judge::Limits;

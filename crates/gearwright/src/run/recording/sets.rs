@@ -9,8 +9,8 @@ use super::judge::Limits;
 use super::measure::Measured;
 use super::source::recordings;
 use super::trend::Entry;
-use crate::case::RecordingCase;
-use crate::case::recording::resolve::{DamagedSet, HealthySet, LimitSource};
+use gearwright_case::RecordingCase;
+use gearwright_case::recording::resolve::{DamagedSet, HealthySet, LimitSource};
 
 /// Files of a run.
 #[derive(Debug, Clone)]

@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use hums::io::{EXTENSIONS, is_recording, open_counted, rate_of_times};
 
 use super::error::RecordingError;
-use crate::case::recording::RecordingCase;
-use crate::case::recording::resolve::TachometerSource;
 use crate::run::RunObserver;
+use gearwright_case::recording::RecordingCase;
+use gearwright_case::recording::resolve::TachometerSource;
 
 /// Samples of a block: memory does not grow with the recording.
 const BLOCK: usize = 1 << 16;

@@ -7,7 +7,7 @@ use hums::threshold::{AlarmRule, Rate, alarms};
 
 use super::judge::Limits;
 use super::measure::{Measured, Row};
-use crate::case::recording::resolve::MemoryPlan;
+use gearwright_case::recording::resolve::MemoryPlan;
 
 /// A recording of a trend.
 #[derive(Debug)]

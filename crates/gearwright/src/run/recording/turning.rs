@@ -7,8 +7,8 @@ use hums::tachometer::{PulseFinder, PulseOptions, RepairedPulses, Shaft, repair}
 
 use super::error::RecordingError;
 use super::source::{Layout, Progress, each_block};
-use crate::case::recording::RecordingCase;
-use crate::case::recording::resolve::TachometerSource;
+use gearwright_case::recording::RecordingCase;
+use gearwright_case::recording::resolve::TachometerSource;
 
 /// Longest recording for which a constant-speed shaft is laid out (samples).
 const LONGEST: usize = 1 << 40;

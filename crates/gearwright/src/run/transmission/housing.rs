@@ -6,8 +6,8 @@ use planetary::elastic::{ElasticBody, Port, RingSeat, Sensor};
 use serde::{Deserialize, Serialize};
 
 use super::cache::Cache;
-use crate::case::transmission::housing::HousingPlan;
 use crate::run::RunObserver;
+use gearwright_case::transmission::housing::HousingPlan;
 
 /// An elastic body as it is kept.
 #[derive(Debug, Serialize, Deserialize)]

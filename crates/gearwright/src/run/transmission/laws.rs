@@ -11,10 +11,10 @@ use planetary::mesh::{
 
 use super::cache::Cache;
 use super::model::{Laws, bevel_force, mean_force};
-use crate::case::TransmissionCase;
-use crate::case::transmission::bevel::BevelStage;
-use crate::case::transmission::damage::Severity;
 use crate::run::{AsObserver, RunObserver};
+use gearwright_case::TransmissionCase;
+use gearwright_case::transmission::bevel::BevelStage;
+use gearwright_case::transmission::damage::Severity;
 
 /// Offsets that differ by less (mesh cycles) share their tables.
 const SAME_PHASE: f64 = 1e-9;

@@ -19,11 +19,11 @@ use planetary::elastic::ElasticBody;
 use planetary::engine::{Load, NaturalMode, RunRequest, Start, Transmission, TransmissionRun, Turning};
 use rayon::prelude::*;
 
-use crate::case::TransmissionCase;
-use crate::case::lumped_pair::resolve::HEALTHY;
 use crate::output::folder::ResultsFolder;
 use crate::output::{transmission_summary as summary, transmission_tables as tables};
 use crate::plot::transmission as figures;
+use gearwright_case::TransmissionCase;
+use gearwright_case::lumped_pair::resolve::HEALTHY;
 
 use super::{Finished, RunObserver};
 use cache::Cache;

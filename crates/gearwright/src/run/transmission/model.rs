@@ -10,10 +10,10 @@ use planetary::engine::{
 };
 use planetary::mesh::MeshLaw;
 
-use crate::case::TransmissionCase;
-use crate::case::transmission::bevel;
-use crate::case::transmission::resolve::BodyValues;
-use crate::case::transmission::schema::Supported;
+use gearwright_case::TransmissionCase;
+use gearwright_case::transmission::bevel;
+use gearwright_case::transmission::resolve::BodyValues;
+use gearwright_case::transmission::schema::Supported;
 
 const MM: f64 = 1e-3;
 const STANDING: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

@@ -10,8 +10,8 @@ use hums::resample::Interpolation;
 use hums::tachometer::{Edge, PulseOptions};
 
 use super::schema::{self, Delimiter, Method, Recording};
-use crate::case::document::Node;
-use crate::case::fault::Fault;
+use crate::document::Node;
+use crate::fault::Fault;
 
 /// A recording case, ready to run.
 #[derive(Debug, Clone)]

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::case::spur_pair::schema::Values;
+use crate::spur_pair::schema::Values;
 
 /// Dynamics of a gear pair: the contact of the finite-element model solved at every step of time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -11,14 +11,12 @@ use super::bevel::{BevelStage, bevel};
 use super::damage::{Severity, severities};
 use super::housing::{HousingPlan, plan};
 use super::schema::{Bearing, Body, Supported, Transmission};
-use crate::case::document::Node;
-use crate::case::dynamics::schema;
-use crate::case::fault::Fault;
-use crate::case::lumped_pair::disc::mass_and_inertia;
-use crate::case::spur_pair::resolve::{
-    contact_options, face_model, fill_defaults, geometry_fault, member_options, spec,
-};
-use crate::case::spur_pair::schema::Form;
+use crate::document::Node;
+use crate::dynamics::schema;
+use crate::fault::Fault;
+use crate::lumped_pair::disc::mass_and_inertia;
+use crate::spur_pair::resolve::{contact_options, face_model, fill_defaults, geometry_fault, member_options, spec};
+use crate::spur_pair::schema::Form;
 
 const MM: f64 = 1e-3;
 /// Steps of a run, at most.

@@ -2,6 +2,26 @@
 //!
 //! `text -> document (with lines) -> checked against the schema of its kind -> as written -> resolved (SI)`; every stage tells all its
 //! faults at once. A kind is a folder with its `schema` (keys, units, ranges, defaults) and `resolve`, listed in [`kind::KINDS`].
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`kind`] | the list of kinds |
+//! | [`document`], [`check`], [`mod@reference`], [`template`] | lines of keys, checks against the schema, documentation of keys, `init` files |
+//! | [`spur_pair`], [`lumped_pair`], [`dynamics`], [`transmission`], [`recording`] | one kind each: `schema` (as written), `resolve` (SI) |
+//!
+//! ```
+//! use gearwright_case::{self as case, Case, kind, template};
+//!
+//! let kind = kind::find("spur-pair").ok_or("no such kind")?;
+//! let text = template::commented(kind);
+//! let Case::SpurPair(case) = case::from_text(&text, "example.toml".as_ref())? else { return Err("another kind".into()) };
+//! assert_eq!(case.pair.pinion().teeth(), 25);
+//!
+//! // a fault is reported with its line and what is allowed
+//! let faults = case::from_text(&text.replace("teeth = 25", "teeth = 3"), "example.toml".as_ref()).unwrap_err().to_string();
+//! assert!(faults.contains("pinion.teeth"), "{faults}");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod check;
 pub mod document;

@@ -8,9 +8,9 @@ use super::curves::Curves;
 use super::disc::mass_and_inertia;
 use super::schema::{self, Disc, Input, LumpedPair, Member, Separation, Supports, Table};
 use super::table;
-use crate::case::document::Node;
-use crate::case::fault::Fault;
-use crate::case::{self, SpurPairCase};
+use crate::document::Node;
+use crate::fault::Fault;
+use crate::{self, SpurPairCase};
 
 const MM: f64 = 1e-3;
 const UM: f64 = 1e-6;

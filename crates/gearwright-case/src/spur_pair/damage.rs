@@ -14,8 +14,8 @@ use super::schema::{
     BrokenCorner, Crack, CrackSide, Damage, FaceEnd, HeightAlong, LandmarkName, Member, Model, Pit as PitKeys,
     SpurPair, Values, Wear,
 };
-use crate::case::document::Node;
-use crate::case::fault::Fault;
+use crate::document::Node;
+use crate::fault::Fault;
 
 /// Damages named one by one in a legend.
 const MOST_LABELS: usize = 2;
@@ -49,7 +49,7 @@ pub fn severities(
 
 /// What of a damage section describes the damage itself, wherever it is.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::case) struct Shapes<'a> {
+pub(crate) struct Shapes<'a> {
     /// A root crack.
     pub crack: Option<&'a Crack>,
     /// A pit.
@@ -62,7 +62,7 @@ pub(in crate::case) struct Shapes<'a> {
 
 /// The tooth that is damaged.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::case) struct Site<'a> {
+pub(crate) struct Site<'a> {
     /// The pair it is judged in.
     pub pair: &'a GearPair,
     /// Which gear of the pair.
@@ -85,11 +85,7 @@ impl Damage {
 }
 
 /// Number of severities of sections with these lists; lists of unlike lengths are faults.
-pub(in crate::case) fn count(
-    sections: &[Vec<(&'static str, &Values)>],
-    document: &Node,
-    faults: &mut Vec<Fault>,
-) -> usize {
+pub(crate) fn count(sections: &[Vec<(&'static str, &Values)>], document: &Node, faults: &mut Vec<Fault>) -> usize {
     let length = |values: &Values| if let Values::Each(list) = values { list.len() } else { 1 };
     let count = sections.iter().flatten().map(|(_, values)| length(values)).max().unwrap_or(1);
     for (index, section) in sections.iter().enumerate() {
@@ -107,7 +103,7 @@ pub(in crate::case) fn count(
 }
 
 /// Keys that may hold lists.
-pub(in crate::case) fn values_of(damage: Shapes<'_>) -> Vec<(&'static str, &Values)> {
+pub(crate) fn values_of(damage: Shapes<'_>) -> Vec<(&'static str, &Values)> {
     let crack = damage
         .crack
         .iter()
@@ -122,7 +118,7 @@ pub(in crate::case) fn values_of(damage: Shapes<'_>) -> Vec<(&'static str, &Valu
 }
 
 /// Value of a severity.
-pub(in crate::case) fn at(values: &Values, severity: usize) -> f64 {
+pub(crate) fn at(values: &Values, severity: usize) -> f64 {
     match values {
         Values::One(value) => *value,
         Values::Each(list) => list[severity],
@@ -164,12 +160,12 @@ fn severity(
 }
 
 /// Label of a severity of several damages; many sections are one shape made of parts.
-pub(in crate::case) fn joined(labels: &[String]) -> String {
+pub(crate) fn joined(labels: &[String]) -> String {
     if labels.len() > MOST_LABELS { format!("{} and {} more", labels[0], labels.len() - 1) } else { labels.join(", ") }
 }
 
 /// One damage of a severity, with every fault at its key below the section's.
-pub(in crate::case) fn damage_of(
+pub(crate) fn damage_of(
     shapes: Shapes<'_>,
     site: Site<'_>,
     index: usize,
@@ -227,7 +223,7 @@ pub(in crate::case) fn damage_of(
 }
 
 /// What distinguishes a severity.
-pub(in crate::case) fn label(damage: Shapes<'_>, index: usize) -> String {
+pub(crate) fn label(damage: Shapes<'_>, index: usize) -> String {
     let show = |values: &Option<Values>| values.as_ref().map(|v| at(v, index));
     if let Some(keys) = damage.crack {
         let crack = if keys.front_percent.is_empty() { "crack" } else { "crack up to" };

@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::stage_schema::{Bevel, Housing};
-use crate::case::dynamics::schema::Integrator;
-use crate::case::spur_pair::schema::{
+use crate::dynamics::schema::Integrator;
+use crate::spur_pair::schema::{
     BrokenCorner, Crack, Gear, Material, Mesh, Model, Numerics as Contact, Pit, Values, Wear,
 };
 

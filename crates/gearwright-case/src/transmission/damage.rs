@@ -6,10 +6,10 @@ use std::path::Path;
 use gear_geom::{Member, MeshSite, PlanetaryTrain, TrainTooth};
 
 use super::schema::{Damage, Member as On, Transmission};
-use crate::case::document::Node;
-use crate::case::fault::Fault;
-use crate::case::spur_pair::damage::{Shapes, Site, at, count, damage_of, joined, label, values_of};
-use crate::case::spur_pair::schema::{Model, Values};
+use crate::document::Node;
+use crate::fault::Fault;
+use crate::spur_pair::damage::{Shapes, Site, at, count, damage_of, joined, label, values_of};
+use crate::spur_pair::schema::{Model, Values};
 
 /// A damaged state.
 #[derive(Debug, Clone, PartialEq)]

@@ -13,8 +13,8 @@ use super::damage::{Severity, severities};
 use super::schema::{
     FilletShape, Form, Gear, HubCondition, Material, Mesh, Model, Modification, Numerics, ReliefShape, Solver, SpurPair,
 };
-use crate::case::document::Node;
-use crate::case::fault::Fault;
+use crate::document::Node;
+use crate::fault::Fault;
 
 const MM: f64 = 1e-3;
 const UM: f64 = 1e-6;
@@ -79,7 +79,7 @@ pub fn resolve(mut inputs: SpurPair, document: &Node, folder: &Path) -> Result<S
 }
 
 /// Spells out the defaults that depend on other keys; `form` is that of a gear that does not say.
-pub(in crate::case) fn fill_defaults(gear: &mut Gear, mesh: &Mesh, form: Form) {
+pub(crate) fn fill_defaults(gear: &mut Gear, mesh: &Mesh, form: Form) {
     let module = mesh.module_mm;
     let form = *gear.form.get_or_insert(form);
     gear.tip_round_mm.get_or_insert(0.02 * module);
@@ -97,7 +97,7 @@ pub(in crate::case) fn fill_defaults(gear: &mut Gear, mesh: &Mesh, form: Form) {
 }
 
 /// A gear in SI units.
-pub(in crate::case) fn spec(
+pub(crate) fn spec(
     name: &str,
     gear: &Gear,
     mesh: &Mesh,
@@ -271,7 +271,7 @@ fn options(inputs: &SpurPair, document: &Node, faults: &mut Vec<Fault>) -> PairM
 }
 
 /// Material, mesh and hub of a gear.
-pub(in crate::case) fn member_options(
+pub(crate) fn member_options(
     (name, gear): (&str, &Gear),
     material: &Material,
     numerics: &Numerics,
@@ -298,7 +298,7 @@ pub(in crate::case) fn member_options(
 }
 
 /// Model along the face.
-pub(in crate::case) fn face_model(model: Model, numerics: &Numerics) -> FaceModel {
+pub(crate) fn face_model(model: Model, numerics: &Numerics) -> FaceModel {
     match model {
         Model::Solid => FaceModel::Solid { order: numerics.face_order as usize },
         Model::PlaneStress => FaceModel::PlaneStress,
@@ -307,7 +307,7 @@ pub(in crate::case) fn face_model(model: Model, numerics: &Numerics) -> FaceMode
 }
 
 /// Contact grid and solver.
-pub(in crate::case) fn contact_options(numerics: &Numerics) -> ContactOptions {
+pub(crate) fn contact_options(numerics: &Numerics) -> ContactOptions {
     ContactOptions {
         cells_per_half_width: numerics.cells_per_half_width,
         face_cells: numerics.face_cells as usize,
@@ -356,7 +356,7 @@ fn map_torques(inputs: &SpurPair, document: &Node, faults: &mut Vec<Fault>) -> V
 }
 
 /// A geometry error at the key it comes from.
-pub(in crate::case) fn geometry_fault(document: &Node, member: Option<&str>, error: &GeometryError) -> Fault {
+pub(crate) fn geometry_fault(document: &Node, member: Option<&str>, error: &GeometryError) -> Fault {
     let key = match error.parameter() {
         "tip_radius" => "tip_diameter_mm",
         "root_radius" => "root_diameter_mm",

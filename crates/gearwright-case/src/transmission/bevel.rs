@@ -6,8 +6,8 @@ use nalgebra::{Point3, Unit, Vector3};
 use super::resolve::BodyValues;
 use super::schema::{Body, Transmission};
 use super::stage_schema::{Facing, Hand};
-use crate::case::document::Node;
-use crate::case::fault::Fault;
+use crate::document::Node;
+use crate::fault::Fault;
 
 const MM: f64 = 1e-3;
 

@@ -7,12 +7,12 @@ use fecm::dynamics::{
 };
 
 use super::schema::{self, Dynamics, Input, Rotor, Solver, Start};
-use crate::case::document::Node;
-use crate::case::fault::Fault;
-use crate::case::lumped_pair::disc::mass_and_inertia;
-use crate::case::spur_pair::damage::Severity;
-use crate::case::spur_pair::schema::Values;
-use crate::case::{self, SpurPairCase};
+use crate::document::Node;
+use crate::fault::Fault;
+use crate::lumped_pair::disc::mass_and_inertia;
+use crate::spur_pair::damage::Severity;
+use crate::spur_pair::schema::Values;
+use crate::{self, SpurPairCase};
 
 /// Steps of a run, at most.
 const MOST_STEPS: f64 = 1e8;

@@ -12,8 +12,8 @@ use planetary::housing::{
 use super::resolve::Place;
 use super::schema::Transmission;
 use super::stage_schema::{Housing, MeshUnits};
-use crate::case::document::Node;
-use crate::case::fault::Fault;
+use crate::document::Node;
+use crate::fault::Fault;
 
 const MM: f64 = 1e-3;
 
