@@ -5,6 +5,7 @@ use clap::{Parser, Subcommand};
 mod calculix;
 mod calculix_housing;
 mod ci;
+mod compare;
 mod damage_classifier;
 mod docs;
 mod reproduce;
@@ -41,6 +42,8 @@ enum Command {
     PeerCalculix,
     /// Natural frequencies of the default housing against CalculiX; writes docs/reports/calculix-housing.md.
     PeerHousing,
+    /// Every number of the result files of all case files before and after a change, to the bit.
+    CompareResults(compare::Options),
     /// Confusion table of the damage classifier (dissertation, section 3.3); writes docs/reports/damage-classifier.md.
     DamageClassifier,
     /// Figures and tables of the dissertation, computed again from the case files, beside the printed numbers, on one page.
@@ -63,6 +66,7 @@ fn main() -> anyhow::Result<()> {
         Command::Docs { check, no_api } => docs::run(check, !no_api),
         Command::PeerCalculix => calculix::run(),
         Command::PeerHousing => calculix_housing::run(),
+        Command::CompareResults(options) => compare::run(&options),
         Command::DamageClassifier => damage_classifier::run(),
         Command::ReproduceThesisFigures(options) => reproduce::run(&options),
         Command::SceneCosts => scene_costs::run(),
