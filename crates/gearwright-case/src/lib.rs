@@ -49,7 +49,6 @@ pub use transmission::TransmissionCase;
 
 /// A case file, checked and resolved.
 #[derive(Debug, Clone)]
-#[non_exhaustive]
 pub enum Case {
     /// Statics of a spur gear pair.
     SpurPair(Box<SpurPairCase>),

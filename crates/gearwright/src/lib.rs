@@ -3,8 +3,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`run`] | a case from start to published results |
-//! | [`output`] | tables, summary, ParaView files, the results folder |
-//! | [`plot`] | figures |
+//! | [`folder`] | the results folder |
 //! | [`cli`] | commands and progress; the only module that writes to the terminal |
 //!
 //! A case, from text to gears in mesh; [`run::run`] would compute it into a folder:
@@ -24,6 +23,5 @@
 //! ```
 
 pub mod cli;
-pub mod output;
-pub mod plot;
+pub mod folder;
 pub mod run;

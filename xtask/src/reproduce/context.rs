@@ -6,10 +6,9 @@ use std::rc::Rc;
 
 use anyhow::{Context as _, bail};
 use gear_geom::MeshSite;
-use gearwright::output::lumped_summary::Times;
-use gearwright::run::lumped_pair::analyses::{self, Findings};
-use gearwright::run::lumped_pair::states::{self, State};
 use gearwright_case::{self as case, Case, SpurPairCase, TransmissionCase};
+use gearwright_results::lumped::Lumped;
+use gearwright_study::lumped_pair;
 
 use super::dynamics::Dynamics;
 use super::statics::{self, Statics};
@@ -22,14 +21,6 @@ pub const QUICK: [(&str, &str, f64); 3] =
     [("numerics", "face_cells", 24.0), ("numerics", "face_order", 4.0), ("numerics", "cells_per_half_width", 5.0)];
 /// Torques of a force-deflection map at the quick level.
 pub const QUICK_TORQUES: f64 = 12.0;
-
-/// A lumped-parameter case, run.
-pub struct Lumped {
-    /// States, the healthy one first.
-    pub states: Vec<State>,
-    /// What was found.
-    pub findings: Findings,
-}
 
 /// What a figure can ask for.
 pub struct Context<'a> {
@@ -151,9 +142,7 @@ impl<'a> Context<'a> {
             return Ok(Rc::clone(run));
         }
         let Case::LumpedPair(case) = self.case(file)? else { bail!("configs/{file} is not a lumped-pair") };
-        let states = states::build(&case, &())?;
-        let findings = analyses::run(&case, &states, &(), &mut Times::default())?;
-        let run = Rc::new(Lumped { states, findings });
+        let run = Rc::new(lumped_pair::compute(&case, &())?);
         self.lumped.borrow_mut().insert(file.into(), Rc::clone(&run));
         Ok(run)
     }

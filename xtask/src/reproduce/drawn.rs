@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use gearwright::plot::drawing::Drawing;
-use gearwright::plot::{Chart, FlankMap, Line, Mark, MarkedChart, Pattern, PolarChart};
+use gearwright_plot::drawing::Drawing;
+use gearwright_plot::{Chart, FlankMap, Line, Mark, MarkedChart, Pattern, PolarChart};
 use serde::{Deserialize, Serialize};
 
 use super::registry::Figure;

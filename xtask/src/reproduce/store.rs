@@ -8,7 +8,7 @@ use std::hash::{DefaultHasher, Hasher};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, anyhow};
-use gearwright::run::transmission::cache::Cache;
+use gearwright_study::transmission::cache::Cache;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -16,14 +16,15 @@ use super::drawn::{Drawn, Saved};
 use super::{Level, root};
 
 /// Sources that a study depends on.
-const COMPUTING: [&str; 11] = [
+const COMPUTING: [&str; 12] = [
     "crates/gear-geom/src",
     "crates/fecm/src",
     "crates/lpm/src",
     "crates/hums/src",
     "crates/planetary/src",
     "crates/gearwright-case/src",
-    "crates/gearwright/src/run",
+    "crates/gearwright-results/src",
+    "crates/gearwright-study/src",
     "xtask/src/reproduce/statics.rs",
     "xtask/src/reproduce/dynamics.rs",
     "xtask/src/reproduce/vibration.rs",
@@ -31,7 +32,7 @@ const COMPUTING: [&str; 11] = [
 ];
 /// Sources that a figure depends on besides.
 const DRAWING: [&str; 3] =
-    ["crates/gearwright/src/plot", "xtask/src/reproduce/figures", "xtask/src/reproduce/drawn.rs"];
+    ["crates/gearwright-plot/src", "xtask/src/reproduce/figures", "xtask/src/reproduce/drawn.rs"];
 
 /// The results folder and what is up to date in it.
 pub struct Store {

@@ -2,9 +2,9 @@
 
 use anyhow::{Context as _, ensure};
 use gear_geom::{CrackLength, Damage};
-use gearwright::run::transmission::{self as run, cache::Cache};
 use gearwright_case::TransmissionCase;
 use gearwright_case::transmission::damage::Severity;
+use gearwright_study::transmission::{self as study, cache::Cache};
 use hums::difference::{RemovalRule, exact_difference, split};
 use hums::indicator::basic::kurtosis;
 use hums::spectrum::{Spectrum, Window};
@@ -166,7 +166,7 @@ pub struct Vibration {
 impl Vibration {
     /// Runs a case in all its states.
     pub fn compute(case: &TransmissionCase, cache: &Cache) -> anyhow::Result<Self> {
-        let found = run::compute(case, cache, &())?.findings;
+        let found = study::compute(case, cache, &())?;
         let clock = Clock {
             per_mesh: case.inputs.run.steps_per_mesh_cycle as usize,
             ring_teeth: case.inputs.ring.teeth as usize,

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use anyhow::anyhow;
-use gearwright::plot::{COLOURS, Chart, Line, Pattern};
+use gearwright_plot::{COLOURS, Chart, Line, Pattern};
 use lpm::{Supports, WorkPrecision, work_precision};
 
 use super::report::reports;

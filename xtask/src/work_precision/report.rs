@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use anyhow::anyhow;
-use gearwright::plot::{COLOURS, Chart, Line, Pattern};
+use gearwright_plot::{COLOURS, Chart, Line, Pattern};
 
 /// One choice of numerics.
 #[derive(Debug, Clone)]

@@ -7,12 +7,12 @@ use fecm::dynamics::{
 };
 
 use super::schema::{self, Dynamics, Input, Rotor, Solver, Start};
+use crate::SpurPairCase;
 use crate::document::Node;
 use crate::fault::Fault;
 use crate::lumped_pair::disc::mass_and_inertia;
 use crate::spur_pair::damage::Severity;
 use crate::spur_pair::schema::Values;
-use crate::{self, SpurPairCase};
 
 /// Steps of a run, at most.
 const MOST_STEPS: f64 = 1e8;
@@ -53,7 +53,7 @@ pub struct DynamicsCase {
 pub fn resolve(mut inputs: Dynamics, document: &Node, folder: &Path) -> Result<DynamicsCase, Vec<Fault>> {
     let mut faults = Vec::new();
     let file = folder.join(&inputs.pair.spur_pair);
-    let statics = case::load_spur_pair(&file)
+    let statics = crate::load_spur_pair(&file)
         .map_err(|found| faults.push(document.fault("pair.spur_pair", format!("its file has faults:\n{found}"))));
     let mut fault = |key: &str, message: String| faults.push(document.fault(key, message));
     let pinion_rotation = input_support(&inputs, &mut fault);

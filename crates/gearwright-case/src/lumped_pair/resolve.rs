@@ -8,9 +8,9 @@ use super::curves::Curves;
 use super::disc::mass_and_inertia;
 use super::schema::{self, Disc, Input, LumpedPair, Member, Separation, Supports, Table};
 use super::table;
+use crate::SpurPairCase;
 use crate::document::Node;
 use crate::fault::Fault;
-use crate::{self, SpurPairCase};
 
 const MM: f64 = 1e-3;
 const UM: f64 = 1e-6;
@@ -112,7 +112,7 @@ pub fn resolve(mut inputs: LumpedPair, document: &Node, folder: &Path) -> Result
 
 /// A spur-pair case file, its faults in one message.
 fn spur_pair(file: &Path) -> Result<Box<SpurPairCase>, String> {
-    case::load_spur_pair(file).map(Box::new).map_err(|faults| format!("its file has faults:\n{faults}"))
+    crate::load_spur_pair(file).map(Box::new).map_err(|faults| format!("its file has faults:\n{faults}"))
 }
 
 /// Refuses a damaged case whose phases are not those of the healthy one.

@@ -133,7 +133,7 @@ fn about(case: &Case) -> anyhow::Result<String> {
                 case.speeds.iter().map(|w| format!("{:.1}", w * 30.0 / std::f64::consts::PI)).collect();
             let states = 1 + case.severities.len();
             // the stiffness of the mesh takes the healthy gears
-            let steps = run::dynamics::steps_told(case)?;
+            let steps = gearwright_study::dynamics::steps_told(case)?;
             format!("{} rpm, {} mesh cycles recorded, {states} states\n{steps}", speeds.join(", "), case.cycles)
         }
         Case::Transmission(case) => {

@@ -1,24 +1,15 @@
 //! Running a case: compute, write everything, publish the folder.
 
-pub mod dynamics;
-pub mod lumped_pair;
-pub mod recording;
-pub mod spur_pair;
-pub mod transmission;
+mod dynamics;
+mod lumped_pair;
+mod recording;
+mod spur_pair;
+mod transmission;
 
 use std::path::{Path, PathBuf};
 
-use fecm::statics::Observer;
-
 use gearwright_case::Case;
-
-/// Follows a run.
-pub trait RunObserver: Observer {
-    /// A stage begins.
-    fn stage(&self, _name: &str) {}
-}
-
-impl RunObserver for () {}
+pub use gearwright_study::RunObserver;
 
 /// A finished run.
 #[derive(Debug)]
@@ -42,18 +33,5 @@ pub fn run(case: &Case, target: &Path, observer: &dyn RunObserver) -> anyhow::Re
         Case::Dynamics(case) => dynamics::run(case, target, observer),
         Case::Transmission(case) => transmission::run(case, target, observer),
         Case::Recording(case) => recording::run(case, target, observer),
-    }
-}
-
-/// Passes on what the solver reports.
-struct AsObserver<'a>(&'a dyn RunObserver);
-
-impl Observer for AsObserver<'_> {
-    fn advanced(&self, done: usize, total: usize) {
-        self.0.advanced(done, total);
-    }
-
-    fn is_cancelled(&self) -> bool {
-        self.0.is_cancelled()
     }
 }

@@ -1,7 +1,7 @@
 //! Chapter 2: the unity pair, healthy and with pits.
 
 use gear_geom::Member;
-use gearwright::plot::Pattern;
+use gearwright_plot::Pattern;
 
 use super::scheme;
 use crate::reproduce::context::Context;

@@ -1,8 +1,8 @@
 //! Chapter 3, statics: force-deflection behaviour, pits and cracks of the nonunity pair, and what both do to the transmission error.
 
 use gear_geom::Member;
-use gearwright::plot::{Line, Pattern};
 use gearwright_case::SpurPairCase;
+use gearwright_plot::{Line, Pattern};
 
 use super::scheme;
 use crate::reproduce::context::Context;

@@ -1,7 +1,7 @@
 //! Chapter 4: the phenomenon-based model, its fit to difference signals, and its condition indicators.
 
 use anyhow::Context as _;
-use gearwright::plot::{Line, Mark, Pattern};
+use gearwright_plot::{Line, Mark, Pattern};
 use hums::indicator::basic::{kurtosis, m8a, rms};
 use hums::phenomenon::fit::{Fit, FitOptions, fit};
 use hums::phenomenon::{ClosedForm, DampedSine, simplified_indicators};

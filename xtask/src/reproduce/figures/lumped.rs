@@ -1,11 +1,11 @@
 //! Lumped-parameter dynamics: the rest of chapter 3, and chapter 7.
 
-use gearwright::plot::{Line, Mark, Pattern};
-use gearwright::run::lumped_pair::analyses::{DamageResult, SweepResult, TimeResponse};
+use gearwright_plot::{Line, Mark, Pattern};
+use gearwright_results::lumped::{DamageResult, Lumped, SweepResult, TimeResponse};
 
 use super::chapter3::CRACKS;
 use super::scheme;
-use crate::reproduce::context::{Context, Lumped};
+use crate::reproduce::context::Context;
 use crate::reproduce::drawn::{Drawn, Panel, colour::*, line};
 use crate::reproduce::statics::{bottom, top};
 

@@ -6,10 +6,10 @@ use fecm::MeshDensity;
 use fecm::mesh::{PlaneMesh, SectorMesh};
 use fecm::statics::{PairModel, StaticsRequest};
 use gear_geom::{Damage, FlankSide, Gear, Member, PitShape, ProfileMeasure, RootCrack};
-use gearwright::plot::drawing::{Align, Drawing, Label, Stroke};
-use gearwright::plot::{Pattern, statics as plots};
 use gearwright_case::SpurPairCase;
 use gearwright_case::spur_pair::damage::Severity;
+use gearwright_plot::drawing::{Align, Drawing, Label, Stroke};
+use gearwright_plot::{Pattern, statics as plots};
 use nalgebra::{Point2, Rotation2};
 
 use crate::reproduce::context::Context;

@@ -6,7 +6,7 @@ pub mod model;
 pub mod ring;
 pub mod sun;
 
-use gearwright::plot::{Line, Mark, Pattern, PolarChart};
+use gearwright_plot::{Line, Mark, Pattern, PolarChart};
 
 use crate::reproduce::drawn::{Panel, Picture, colour::*, line};
 use crate::reproduce::vibration::{Clock, State};

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use anyhow::Context as _;
 use gear_geom::{Damage, FlankSide, Gear, Member, MeshSite, OutlineSegment, TrainTooth};
-use gearwright::plot::drawing::{Align, Drawing, Label, Stroke};
 use gearwright_case::TransmissionCase;
+use gearwright_plot::drawing::{Align, Drawing, Label, Stroke};
 use nalgebra::{Point2, Rotation2, Rotation3, Vector3};
 use planetary::housing::surface::Surface;
 

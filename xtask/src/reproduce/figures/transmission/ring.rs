@@ -1,7 +1,7 @@
 //! Figures 5.5 to 5.10 and Table 5.2: a root crack on a tooth of the ring.
 
 use anyhow::{Context as _, ensure};
-use gearwright::plot::Band;
+use gearwright_plot::Band;
 use hums::indicator::basic::{kurtosis, peak};
 
 use super::*;

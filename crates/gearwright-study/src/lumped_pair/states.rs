@@ -1,0 +1,132 @@
+//! States of a pair: curves of each, by a static analysis where asked for, and the model they make.
+
+use anyhow::{Context, anyhow, bail};
+use fecm::statics::{PairModel, StaticsRequest};
+use lpm::{Excitation, GearPair, Model};
+
+use gearwright_results::lumped::State;
+
+use crate::{AsObserver, RunObserver};
+use gearwright_case::lumped_pair::curves::{Curves, Points};
+use gearwright_case::lumped_pair::resolve::{DamagedState, Damping, HEALTHY, Source};
+use gearwright_case::{LumpedPairCase, SpurPairCase};
+
+/// All states, the healthy one first.
+///
+/// # Errors
+/// Those of static analyses and models.
+pub fn build(case: &LumpedPairCase, observer: &dyn RunObserver) -> anyhow::Result<Vec<State>> {
+    let healthy = healthy(case, observer)?;
+    let mut pair: GearPair = case.pair;
+    pair.mesh_damping = match case.damping {
+        Damping::Absolute(damping) => damping,
+        Damping::Ratio(ratio) => pair.damping_for_ratio(ratio, healthy.stiffness.mean()),
+    };
+    let model = |curves: &Curves, name: &str| {
+        let excitation = Excitation::new(&curves.stiffness, &curves.error);
+        excitation
+            .and_then(|e| Model::new(&pair, &e, case.supports))
+            .with_context(|| format!("state \"{name}\" cannot be modelled"))
+    };
+    let mut states =
+        vec![State { name: HEALTHY.into(), model: model(&healthy, HEALTHY)?, curves: healthy, damaged_cycles: None }];
+    for state in &case.damaged {
+        for (name, damaged) in damaged(case, state, &states[0].curves, observer)? {
+            let healthy = &states[0].curves;
+            let rotation = case.rotation.ok_or_else(|| anyhow!("damaged states need the number of teeth"))?;
+            let first = state.first.unwrap_or_else(|| damaged.first.rem_euclid(rotation as i64) as usize);
+            let until = first + damaged.stiffness.period();
+            if until > rotation {
+                bail!(
+                    "state \"{name}\" changes the mesh cycles {first} to {until}, beyond the rotation of {rotation}: \
+                     set its mesh_cycle"
+                );
+            }
+            let whole = healthy
+                .with_damage(rotation, first, &damaged)
+                .with_context(|| format!("the curves of state \"{name}\" do not fit the rotation"))?;
+            let model = model(&whole, &name)?;
+            states.push(State { model, name, curves: whole, damaged_cycles: Some((first, until)) });
+        }
+    }
+    Ok(states)
+}
+
+/// Curves of the healthy pair.
+fn healthy(case: &LumpedPairCase, observer: &dyn RunObserver) -> anyhow::Result<Curves> {
+    match &case.healthy {
+        Source::Known(curves) => Ok((**curves).clone()),
+        Source::Weakened { .. } => bail!("the healthy state has no stiffness of its own"),
+        Source::SpurPair(statics) => {
+            observer.stage("contact statics");
+            let model = condensed(statics)?;
+            let mut points = solve(&model, statics, observer)?;
+            if alike(statics) {
+                points.keep_one_cycle();
+            }
+            curves(points, case, HEALTHY)
+        }
+    }
+}
+
+/// Names and curves of a damaged state: one, or one for each severity of its spur-pair case.
+fn damaged(
+    case: &LumpedPairCase,
+    state: &DamagedState,
+    healthy: &Curves,
+    observer: &dyn RunObserver,
+) -> anyhow::Result<Vec<(String, Curves)>> {
+    let name = &state.name;
+    match &state.source {
+        Source::Known(curves) => Ok(vec![(name.clone(), (**curves).clone())]),
+        Source::Weakened { factor, cycles } => Ok(vec![(name.clone(), healthy.weakened(*factor, *cycles)?)]),
+        Source::SpurPair(statics) => {
+            let mut model = condensed(statics)?;
+            if statics.severities.is_empty() {
+                observer.stage(&format!("contact statics, {name}"));
+                let points = solve(&model, statics, observer)?;
+                return Ok(vec![(name.clone(), curves(points, case, name)?)]);
+            }
+            let mut all = Vec::new();
+            for severity in &statics.severities {
+                let name = if statics.severities.len() == 1 { name.clone() } else { severity.label.clone() };
+                observer.stage(&format!("contact statics, {name}"));
+                // derived from the severity before: what they have in common is computed once
+                model = model.with_damage(&severity.damage).with_context(|| format!("{name} cannot be modelled"))?;
+                let points = solve(&model, statics, observer)?;
+                let curves = curves(points, case, &name)?;
+                all.push((name, curves));
+            }
+            Ok(all)
+        }
+    }
+}
+
+/// Whether all teeth of a pair are alike, so that one mesh cycle tells all.
+fn alike(statics: &SpurPairCase) -> bool {
+    let gears = [&statics.inputs.pinion, &statics.inputs.gear];
+    gears.iter().all(|gear| gear.modification.pitch_errors_um.is_empty())
+}
+
+fn condensed(statics: &SpurPairCase) -> anyhow::Result<PairModel> {
+    PairModel::new(&statics.pair, &statics.options).context("the gears cannot be modelled")
+}
+
+fn curves(points: Points, case: &LumpedPairCase, name: &str) -> anyhow::Result<Curves> {
+    points
+        .curves(case.interpolation)
+        .map_err(|message| anyhow!("the static analysis of state \"{name}\" is no periodic curve: {message}"))
+}
+
+/// Points of a spur-pair case at its mesh cycles and torque.
+fn solve(model: &PairModel, statics: &SpurPairCase, observer: &dyn RunObserver) -> anyhow::Result<Points> {
+    let request = StaticsRequest {
+        mesh_cycles: statics.mesh_cycles.clone(),
+        torques: vec![statics.inputs.load.torque_n_m],
+        stiffness_difference: true,
+        keep_pressure: false,
+    };
+    let solved = model.solve(&request, &AsObserver(observer)).context("the contact cannot be solved")?;
+    let series = solved.results.first().ok_or_else(|| anyhow!("no positions were solved"))?;
+    Points::from_statics(series, statics.inputs.analysis.mesh_cycle_origin).map_err(|message| anyhow!(message))
+}

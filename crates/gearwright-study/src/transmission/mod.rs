@@ -1,0 +1,191 @@
+//! Vibration of a planetary transmission: mesh tables, housing, every state from equilibrium over its transient to the record, signals judged.
+
+pub mod cache;
+mod housing;
+mod laws;
+mod model;
+mod signals;
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+use anyhow::{Context, bail};
+use fecm::statics::Observer;
+use gear_geom::TrainTooth;
+use gearwright_case::TransmissionCase;
+use gearwright_case::lumped_pair::resolve::HEALTHY;
+use gearwright_results::transmission::summary::Times;
+use gearwright_results::transmission::{Findings, Sensor};
+use planetary::elastic::ElasticBody;
+use planetary::engine::{Load, NaturalMode, RunRequest, Start, Transmission, TransmissionRun, Turning};
+use rayon::prelude::*;
+
+use super::RunObserver;
+use cache::Cache;
+use laws::laws;
+use model::{Laws, mean_force, mean_stiffness};
+use signals::{Judge, periods};
+
+/// Natural frequencies told (Hz), at most.
+const HIGHEST_MODE: f64 = 12e3;
+
+/// Computes all states of a case and judges their signals.
+///
+/// # Errors
+/// Model errors; cancellation. Tables made so far stay in the cache.
+pub fn compute(case: &TransmissionCase, cache: &Cache, observer: &dyn RunObserver) -> anyhow::Result<Findings> {
+    let mut times = Times::default();
+    let clock = Instant::now();
+    let laws = laws(case, cache, observer)?;
+    times.contact = clock.elapsed().as_secs_f64();
+    stopped(observer)?;
+    let clock = Instant::now();
+    let housing = case.housing.as_ref().map(|plan| housing::reduced(plan, cache, observer)).transpose()?;
+    times.housing = clock.elapsed().as_secs_f64();
+    stopped(observer)?;
+
+    let names = std::iter::once(HEALTHY.to_owned()).chain(case.severities.iter().map(|s| s.label.clone()));
+    let states = names.zip(&laws).map(|(name, laws)| {
+        let spec = model::spec(case, laws, housing.clone())?;
+        let ready =
+            Transmission::new(&spec).with_context(|| format!("the transmission cannot be put together ({name})"))?;
+        Ok((name, ready))
+    });
+    let states: Vec<(String, Transmission)> = states.collect::<anyhow::Result<_>>()?;
+
+    observer.stage("natural frequencies");
+    let clock = Instant::now();
+    let (modes, parts) = modes(case, &states[0].1)?;
+    times.modes = clock.elapsed().as_secs_f64();
+
+    observer.stage("vibration of all states (steps)");
+    let clock = Instant::now();
+    let runs = runs(case, &states, observer)?;
+    times.vibration = clock.elapsed().as_secs_f64();
+    stopped(observer)?;
+
+    observer.stage("signals and indicators");
+    let clock = Instant::now();
+    let mut findings = findings(case, &laws[0], runs, modes, parts, housing.as_ref())?;
+    times.signals = clock.elapsed().as_secs_f64();
+    findings.times = times;
+    Ok(findings)
+}
+
+fn stopped(observer: &dyn RunObserver) -> anyhow::Result<()> {
+    if observer.is_cancelled() {
+        bail!("stopped; tables made so far are kept for the next run");
+    }
+    Ok(())
+}
+
+/// Modes of the healthy transmission where the record begins, and the names of its parts.
+fn modes(case: &TransmissionCase, healthy: &Transmission) -> anyhow::Result<(Vec<NaturalMode>, Vec<String>)> {
+    let load = Load { travelled: 0.0, output_torque: case.inputs.run.torque_n_m, carrier_speed: case.speeds.carrier };
+    let mut modes = healthy.natural_modes(&load).context("natural frequencies")?;
+    modes.retain(|mode| mode.frequency <= HIGHEST_MODE);
+    let bodies = healthy.bodies().iter().map(ToString::to_string);
+    Ok((modes, bodies.chain(["housing".to_owned()]).collect()))
+}
+
+/// Progress of runs side by side.
+struct Together<'a> {
+    observer: &'a dyn RunObserver,
+    done: AtomicUsize,
+    total: usize,
+}
+
+impl Observer for Together<'_> {
+    fn advanced(&self, _: usize, _: usize) {
+        let done = self.done.fetch_add(1, Ordering::Relaxed) + 1;
+        // a terminal need not hear of every step
+        if done % 64 == 0 {
+            self.observer.advanced(done, self.total);
+        }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.observer.is_cancelled()
+    }
+}
+
+/// All states over transient and record, side by side.
+fn runs(
+    case: &TransmissionCase,
+    states: &[(String, Transmission)],
+    observer: &dyn RunObserver,
+) -> anyhow::Result<Vec<(String, TransmissionRun)>> {
+    let request = request(case);
+    let total = states.len() * (request.settle_steps + request.record_steps);
+    let together = Together { observer, done: AtomicUsize::new(0), total };
+    let runs: Vec<anyhow::Result<_>> = states
+        .par_iter()
+        .map(|(name, state)| {
+            let run = state.run(&request, &together).with_context(|| format!("the run of the state \"{name}\""))?;
+            Ok((name.clone(), run))
+        })
+        .collect();
+    runs.into_iter().collect()
+}
+
+/// The record begins with the first planet at its angle of the start, so the transient is run before.
+fn request(case: &TransmissionCase) -> RunRequest {
+    let run = &case.inputs.run;
+    let steps = run.steps_per_mesh_cycle as usize;
+    let turn = case.inputs.ring.teeth as usize * steps;
+    let settle_steps = run.settling_planet_passes as usize * turn / case.train.planets();
+    RunRequest {
+        turning: Turning::Steady { carrier_speed: case.speeds.carrier, steps_per_cycle: steps },
+        output_torque: run.torque_n_m,
+        // the first step recorded is the one after
+        travelled: -((settle_steps + 1) as f64) / steps as f64,
+        start: Start::Equilibrium,
+        settle_steps,
+        record_steps: run.carrier_turns as usize * turn,
+        record_motion: false,
+        integrator: case.integrator,
+    }
+}
+
+fn findings(
+    case: &TransmissionCase,
+    healthy: &Laws,
+    runs: Vec<(String, TransmissionRun)>,
+    modes: Vec<NaturalMode>,
+    parts: Vec<String>,
+    housing: Option<&ElasticBody>,
+) -> anyhow::Result<Findings> {
+    let (ring, steps) = (case.inputs.ring.teeth, case.inputs.run.steps_per_mesh_cycle as usize);
+    let periods = periods(ring, case.train.planets(), case.equally_spaced, steps);
+    let judge = Judge::new(&periods, case.inputs.signals.sideband_pairs as usize)?;
+    let turn = ring as usize * steps;
+    // with everything on the sun's shaft alike the ring sees a planet pass repeat, otherwise all must return
+    let on_ring = |tooth: &TrainTooth| matches!(tooth, TrainTooth::Ring(_));
+    let alike = case.bevel.is_none() && case.severities.iter().flat_map(|s| &s.damage).all(|(t, _)| on_ring(t));
+    let repeats = match periods.first() {
+        Some(period) if alike => period.samples,
+        _ => turn * case.train.sun_ring_period() as usize,
+    };
+    let states = signals::states(runs, &judge, repeats).context("the signals cannot be judged")?;
+    let sensors = case.sensors.iter().enumerate().map(|(index, place)| Sensor {
+        name: place.name.clone(),
+        angle_deg: place.angle.to_degrees().rem_euclid(360.0),
+        named: index < case.named_sensors,
+    });
+    let force = mean_force(case);
+    let coordinates = housing.iter().flat_map(|body| body.frequencies.iter().zip(&body.damping_ratios));
+    Ok(Findings {
+        sensors: sensors.collect(),
+        periods,
+        samples_per_turn: turn,
+        mesh_frequency: case.speeds.mesh_frequency,
+        states,
+        modes,
+        parts,
+        housing: coordinates.map(|(omega, zeta)| (omega / std::f64::consts::TAU, *zeta)).collect(),
+        mean_force: force,
+        mean_stiffness: [&healthy.sun, &healthy.ring]
+            .map(|laws| laws.first().map(|law| mean_stiffness(law.as_ref(), force))),
+        times: Times::default(),
+    })
+}
