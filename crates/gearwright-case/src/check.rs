@@ -174,7 +174,17 @@ pub fn expected(schema: &Json) -> String {
     }
 }
 
+/// Features that a key may ask for and that are not there: part of its name, and why.
+const UNSUPPORTED: [(&str, &str); 3] = [
+    ("helix", "helical gears are not supported: the teeth of spur and planetary gears are straight"),
+    ("beta", "helical gears are not supported: the teeth of spur and planetary gears are straight"),
+    ("friction", "friction between flanks is not modelled"),
+];
+
 fn unknown<'a>(key: &str, known: impl Iterator<Item = &'a String> + Clone) -> String {
+    if let Some((_, why)) = UNSUPPORTED.iter().find(|(name, _)| key.split('_').any(|part| part == *name)) {
+        return format!("unknown key; {why}");
+    }
     const UNITS: [&str; 24] = [
         "_mm",
         "_um",

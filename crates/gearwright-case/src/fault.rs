@@ -3,8 +3,10 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+
 /// One fault.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fault {
     /// Line of the case file, from 1; `None` when nothing in the file stands for it.
     pub line: Option<usize>,
@@ -45,16 +47,23 @@ impl fmt::Display for CaseFaults {
                 Some(line) => write!(f, "{file}:{line}: ")?,
                 None => write!(f, "{file}: ")?,
             }
-            if !fault.key.is_empty() {
-                write!(f, "{}", fault.key)?;
-                if let Some(value) = &fault.value {
-                    write!(f, " = {value}")?;
-                }
-                write!(f, ": ")?;
-            }
-            write!(f, "{}", fault.message)?;
+            write!(f, "{fault}")?;
         }
         Ok(())
+    }
+}
+
+/// Key, value and message; the line is the caller's.
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.key.is_empty() {
+            write!(f, "{}", self.key)?;
+            if let Some(value) = &self.value {
+                write!(f, " = {value}")?;
+            }
+            write!(f, ": ")?;
+        }
+        write!(f, "{}", self.message)
     }
 }
 

@@ -27,8 +27,11 @@ pub mod check;
 pub mod document;
 pub mod dynamics;
 pub mod fault;
+mod geometry;
 pub mod kind;
 pub mod lumped_pair;
+pub mod notes;
+mod physics;
 pub mod recording;
 pub mod reference;
 pub mod spur_pair;
@@ -43,6 +46,7 @@ pub use dynamics::DynamicsCase;
 pub use fault::{CaseFaults, Fault};
 use kind::CaseKind;
 pub use lumped_pair::LumpedPairCase;
+pub use notes::Notes;
 pub use recording::RecordingCase;
 pub use spur_pair::SpurPairCase;
 pub use transmission::TransmissionCase;
@@ -72,6 +76,18 @@ impl Case {
             Self::Dynamics(_) => dynamics::KIND.name,
             Self::Transmission(_) => transmission::KIND.name,
             Self::Recording(_) => recording::KIND.name,
+        }
+    }
+
+    /// Warnings and assumptions.
+    #[must_use]
+    pub fn notes(&self) -> &Notes {
+        match self {
+            Self::SpurPair(case) => &case.notes,
+            Self::LumpedPair(case) => &case.notes,
+            Self::Dynamics(case) => &case.notes,
+            Self::Transmission(case) => &case.notes,
+            Self::Recording(case) => &case.notes,
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Kind `dynamics`: dynamics of a gear pair with the contact of the finite-element model solved at every step.
 
+mod notes;
 pub mod resolve;
 pub mod schema;
 

@@ -6,11 +6,13 @@ use fecm::dynamics::{
     Damping, DynamicsOptions, InitialState, Integrator, RotorInertia, RotorOptions, StepSolver, Support,
 };
 
+use super::notes::notes;
 use super::schema::{self, Dynamics, Input, Rotor, Solver, Start};
 use crate::SpurPairCase;
 use crate::document::Node;
 use crate::fault::Fault;
 use crate::lumped_pair::disc::mass_and_inertia;
+use crate::notes::Notes;
 use crate::spur_pair::damage::Severity;
 use crate::spur_pair::schema::Values;
 
@@ -44,6 +46,8 @@ pub struct DynamicsCase {
     pub origin: f64,
     /// Mesh cycles recorded.
     pub cycles: usize,
+    /// Warnings and assumptions.
+    pub notes: Notes,
 }
 
 /// Resolves a case; `folder` is where files it refers to are looked for.
@@ -103,7 +107,7 @@ pub fn resolve(mut inputs: Dynamics, document: &Node, folder: &Path) -> Result<D
         return Err(faults);
     }
     let origin = inputs.run.mesh_cycle_origin.unwrap_or_default();
-    Ok(DynamicsCase {
+    let mut case = DynamicsCase {
         torque: inputs.pair.torque_n_m.unwrap_or_default(),
         initial: match inputs.run.start {
             Start::Equilibrium => InitialState::Equilibrium,
@@ -118,7 +122,10 @@ pub fn resolve(mut inputs: Dynamics, document: &Node, folder: &Path) -> Result<D
         severities,
         options,
         speeds,
-    })
+        notes: Notes::default(),
+    };
+    case.notes = notes(&case, document);
+    Ok(case)
 }
 
 /// How the pinion's rotation is held.

@@ -2,6 +2,7 @@
 
 pub mod curves;
 pub mod disc;
+mod notes;
 pub mod resolve;
 pub mod schema;
 pub mod table;

@@ -6,11 +6,13 @@ use lpm::{Excitation, GearPair, Interpolation};
 
 use super::curves::Curves;
 use super::disc::mass_and_inertia;
+use super::notes::notes;
 use super::schema::{self, Disc, Input, LumpedPair, Member, Separation, Supports, Table};
 use super::table;
 use crate::SpurPairCase;
 use crate::document::Node;
 use crate::fault::Fault;
+use crate::notes::Notes;
 
 const MM: f64 = 1e-3;
 const UM: f64 = 1e-6;
@@ -36,6 +38,8 @@ pub struct LumpedPairCase {
     pub healthy: Source,
     /// Damaged states.
     pub damaged: Vec<DamagedState>,
+    /// Warnings and assumptions.
+    pub notes: Notes,
 }
 
 /// Mesh damping.
@@ -104,7 +108,20 @@ pub fn resolve(mut inputs: LumpedPair, document: &Node, folder: &Path) -> Result
     let faults = resolver.faults;
     match (healthy, faults.is_empty()) {
         (Some(healthy), true) => {
-            Ok(LumpedPairCase { inputs, pair, damping, supports, rotation, interpolation, healthy, damaged })
+            let made = Notes::default();
+            let mut case = LumpedPairCase {
+                inputs,
+                pair,
+                damping,
+                supports,
+                rotation,
+                interpolation,
+                healthy,
+                damaged,
+                notes: made,
+            };
+            case.notes = notes(&case, document);
+            Ok(case)
         }
         _ => Err(faults),
     }

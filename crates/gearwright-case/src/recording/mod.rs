@@ -1,5 +1,6 @@
 //! Kind `recording`: condition indicators of recorded vibration, of one recording or of a folder of them.
 
+mod notes;
 pub mod resolve;
 pub mod schema;
 

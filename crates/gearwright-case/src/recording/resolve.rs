@@ -9,9 +9,11 @@ use hums::io::text::TextOptions;
 use hums::resample::Interpolation;
 use hums::tachometer::{Edge, PulseOptions};
 
+use super::notes::notes;
 use super::schema::{self, Delimiter, Method, Recording};
 use crate::document::Node;
 use crate::fault::Fault;
+use crate::notes::Notes;
 
 /// A recording case, ready to run.
 #[derive(Debug, Clone)]
@@ -38,6 +40,8 @@ pub struct RecordingCase {
     pub memory: MemoryPlan,
     /// What detection is measured on.
     pub detection: Option<DetectionPlan>,
+    /// Warnings and assumptions.
+    pub notes: Notes,
 }
 
 /// How indicators with a memory keep it.
@@ -147,7 +151,7 @@ pub fn resolve(mut inputs: Recording, document: &Node, folder: &Path) -> Result<
         decimal_comma: inputs.signal.decimal_comma,
         header_lines: inputs.signal.header_lines.map(|lines| lines as usize),
     };
-    Ok(RecordingCase {
+    let mut case = RecordingCase {
         signal: folder.join(inputs.signal.file.trim()),
         text,
         channels,
@@ -163,7 +167,10 @@ pub fn resolve(mut inputs: Recording, document: &Node, folder: &Path) -> Result<
         memory,
         detection,
         inputs,
-    })
+        notes: Notes::default(),
+    };
+    case.notes = notes(&case, document);
+    Ok(case)
 }
 
 fn names(list: &str) -> Vec<String> {

@@ -74,7 +74,7 @@ pub(crate) struct Site<'a> {
 }
 
 impl Damage {
-    fn shapes(&self) -> Shapes<'_> {
+    pub(super) fn shapes(&self) -> Shapes<'_> {
         Shapes {
             crack: self.crack.as_ref(),
             pit: self.pit.as_ref(),
@@ -87,6 +87,13 @@ impl Damage {
 /// Number of severities of sections with these lists; lists of unlike lengths are faults.
 pub(crate) fn count(sections: &[Vec<(&'static str, &Values)>], document: &Node, faults: &mut Vec<Fault>) -> usize {
     let length = |values: &Values| if let Values::Each(list) = values { list.len() } else { 1 };
+    for (index, section) in sections.iter().enumerate() {
+        for (name, _) in section.iter().filter(|(_, values)| length(values) == 0) {
+            faults.push(
+                document.fault(&format!("damage[{}].{name}", index + 1), "is an empty list: give at least one value"),
+            );
+        }
+    }
     let count = sections.iter().flatten().map(|(_, values)| length(values)).max().unwrap_or(1);
     for (index, section) in sections.iter().enumerate() {
         for (name, values) in section {

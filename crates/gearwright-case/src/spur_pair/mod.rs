@@ -1,6 +1,7 @@
 //! Kind `spur-pair`: contact statics of a gear pair over the mesh cycle.
 
 pub mod damage;
+pub mod notes;
 pub mod resolve;
 pub mod schema;
 

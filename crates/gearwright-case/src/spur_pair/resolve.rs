@@ -5,16 +5,19 @@ use std::path::Path;
 use fecm::statics::{ContactOptions, MemberOptions, PairModelOptions};
 use fecm::{BoreCondition, FaceModel, MeshDensity, SolverKind};
 use gear_geom::{
-    EndRelief, FilletSpec, FlankModification, GearKind, GearPair, GearSpec, GeometryError, MeasuredDeviation,
-    ProfileRelief, ToothThickness,
+    EndRelief, FilletSpec, FlankModification, GearKind, GearPair, GearSpec, MeasuredDeviation, ProfileRelief,
+    ToothThickness,
 };
 
 use super::damage::{Severity, severities};
+use super::notes::{notes as notes_on, pitch_error_faults, plane_faults};
 use super::schema::{
     FilletShape, Form, Gear, HubCondition, Material, Mesh, Model, Modification, Numerics, ReliefShape, Solver, SpurPair,
 };
 use crate::document::Node;
 use crate::fault::Fault;
+use crate::geometry::geometry_fault;
+use crate::notes::Notes;
 
 const MM: f64 = 1e-3;
 const UM: f64 = 1e-6;
@@ -34,6 +37,8 @@ pub struct SpurPairCase {
     pub map_torques: Vec<f64>,
     /// Damaged pairs to compute after the healthy one.
     pub severities: Vec<Severity>,
+    /// Warnings and assumptions.
+    pub notes: Notes,
 }
 
 /// Resolves a case; `folder` is where files it refers to are looked for.
@@ -49,6 +54,10 @@ pub fn resolve(mut inputs: SpurPair, document: &Node, folder: &Path) -> Result<S
     fill_defaults(&mut inputs.gear, &inputs.mesh, Form::External);
     let specs = [("pinion", &inputs.pinion), ("gear", &inputs.gear)]
         .map(|(name, gear)| spec(name, gear, &inputs.mesh, document, folder, &mut faults));
+    for ((name, gear), made) in [("pinion", &inputs.pinion), ("gear", &inputs.gear)].into_iter().zip(&specs) {
+        plane_faults(name, gear, made.as_ref(), inputs.analysis.model, document, &mut faults);
+        pitch_error_faults(name, gear, document, &mut faults);
+    }
     let options = options(&inputs, document, &mut faults);
     let mesh_cycles = mesh_cycles(&inputs, document, &mut faults);
     let map_torques = map_torques(&inputs, document, &mut faults);
@@ -72,7 +81,10 @@ pub fn resolve(mut inputs: SpurPair, document: &Node, folder: &Path) -> Result<S
             if !faults.is_empty() {
                 return Err(faults);
             }
-            Ok(SpurPairCase { inputs, pair, options, mesh_cycles, map_torques, severities })
+            let notes = Notes::default();
+            let mut case = SpurPairCase { inputs, pair, options, mesh_cycles, map_torques, severities, notes };
+            case.notes = notes_on(&case, document);
+            Ok(case)
         }
         Err(errors) => Err(errors.0.iter().map(|e| geometry_fault(document, None, e)).collect()),
     }
@@ -353,33 +365,4 @@ fn map_torques(inputs: &SpurPair, document: &Node, faults: &mut Vec<Fault>) -> V
         return vec![to];
     }
     (0..count).map(|k| from + (to - from) * f64::from(k) / f64::from(count - 1)).collect()
-}
-
-/// A geometry error at the key it comes from.
-pub(crate) fn geometry_fault(document: &Node, member: Option<&str>, error: &GeometryError) -> Fault {
-    let key = match error.parameter() {
-        "tip_radius" => "tip_diameter_mm",
-        "root_radius" => "root_diameter_mm",
-        "rim_radius" => "bore_diameter_mm",
-        "thickness" => "tooth_thickness_mm",
-        "facewidth" => "facewidth_mm",
-        "tip_round" => "tip_round_mm",
-        "fillet" => "fillet.radius_mm",
-        "module" => "mesh.module_mm",
-        "pressure_angle" => "mesh.pressure_angle_deg",
-        "centre_distance" => "mesh.centre_distance_mm",
-        "teeth" => "teeth",
-        _ => "modification",
-    };
-    let member = member.or(match error {
-        GeometryError::Interference { member: "pinion", .. } => Some("gear"),
-        GeometryError::Interference { .. } => Some("pinion"),
-        _ => None,
-    });
-    let key = match member {
-        _ if key.starts_with("mesh.") => key.to_owned(),
-        Some(name) => format!("{name}.{key}"),
-        None => "mesh.centre_distance_mm".to_owned(),
-    };
-    document.fault(&key, error.to_string())
 }

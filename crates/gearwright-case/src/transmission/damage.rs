@@ -31,7 +31,7 @@ pub fn own_site(tooth: TrainTooth) -> (MeshSite, Member) {
 }
 
 impl Damage {
-    fn shapes(&self) -> Shapes<'_> {
+    pub(super) fn shapes(&self) -> Shapes<'_> {
         Shapes {
             crack: self.crack.as_ref(),
             pit: self.pit.as_ref(),

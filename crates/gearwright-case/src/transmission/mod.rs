@@ -3,6 +3,7 @@
 pub mod bevel;
 pub mod damage;
 pub mod housing;
+mod notes;
 pub mod resolve;
 pub mod schema;
 pub mod stage_schema;

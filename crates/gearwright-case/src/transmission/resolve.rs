@@ -10,12 +10,16 @@ use gear_geom::{CentralMember, Gear, PlanetaryTrain, PlanetaryTrainSpec, TrainEr
 use super::bevel::{BevelStage, bevel};
 use super::damage::{Severity, severities};
 use super::housing::{HousingPlan, plan};
+use super::notes::notes;
 use super::schema::{Bearing, Body, Supported, Transmission};
 use crate::document::Node;
 use crate::dynamics::schema;
 use crate::fault::Fault;
+use crate::geometry::geometry_fault;
 use crate::lumped_pair::disc::mass_and_inertia;
-use crate::spur_pair::resolve::{contact_options, face_model, fill_defaults, geometry_fault, member_options, spec};
+use crate::notes::Notes;
+use crate::spur_pair::notes::{pitch_error_faults, plane_faults};
+use crate::spur_pair::resolve::{contact_options, face_model, fill_defaults, member_options, spec};
 use crate::spur_pair::schema::Form;
 
 const MM: f64 = 1e-3;
@@ -49,6 +53,8 @@ pub struct TransmissionCase {
     pub severities: Vec<Severity>,
     /// Time integration.
     pub integrator: Integrator,
+    /// Warnings and assumptions.
+    pub notes: Notes,
 }
 
 /// Rigid bodies.
@@ -92,6 +98,16 @@ impl TransmissionCase {
     pub fn bevel_mesh_frequency(&self) -> Option<f64> {
         let pinion = self.inputs.bevel.as_ref()?.pinion_teeth;
         Some(self.inputs.run.speed_rpm / 60.0 * f64::from(pinion))
+    }
+
+    /// Mean force of one mesh of the planetary stage (N).
+    #[must_use]
+    pub fn mean_force(&self) -> f64 {
+        let spec = self.train.spec();
+        let [z_s, z_r] = [&spec.sun, &spec.ring].map(|gear| f64::from(gear.teeth()));
+        // T_s = T_c Z_s / (Z_s + Z_r), shared by the planets; the ring's force is the same by the planet's balance
+        let sun_torque = self.inputs.run.torque_n_m * z_s / (z_s + z_r);
+        sun_torque / spec.sun.base_radius() / self.train.planets() as f64
     }
 }
 
@@ -147,20 +163,25 @@ pub fn resolve(mut inputs: Transmission, document: &Node, folder: &Path) -> Resu
         }
     };
     match speeds {
-        Ok(speeds) if faults.is_empty() => Ok(TransmissionCase {
-            train,
-            pairs,
-            speeds,
-            equally_spaced: angles.windows(2).all(step),
-            bodies,
-            sensors,
-            named_sensors,
-            bevel: stage,
-            housing,
-            severities,
-            integrator,
-            inputs,
-        }),
+        Ok(speeds) if faults.is_empty() => {
+            let mut case = TransmissionCase {
+                train,
+                pairs,
+                speeds,
+                equally_spaced: angles.windows(2).all(step),
+                bodies,
+                sensors,
+                named_sensors,
+                bevel: stage,
+                housing,
+                severities,
+                integrator,
+                inputs,
+                notes: Notes::default(),
+            };
+            case.notes = notes(&case, document);
+            Ok(case)
+        }
         _ => Err(faults),
     }
 }
@@ -179,7 +200,15 @@ fn gears(inputs: &mut Transmission, document: &Node, folder: &Path, faults: &mut
             faults.push(document.fault(&format!("{name}.form"), format!("the {name} is {needed}: leave this key out")));
         }
         fill_defaults(gear, &inputs.mesh, form);
-        let Some(spec) = spec(name, gear, &inputs.mesh, document, folder, faults) else { continue };
+        let written = spec(name, gear, &inputs.mesh, document, folder, faults);
+        plane_faults(name, gear, written.as_ref(), inputs.analysis.model, document, faults);
+        pitch_error_faults(name, gear, document, faults);
+        if gear.modification.pitch_errors_um.iter().any(|error| *error != 0.0) {
+            let message =
+                "pitch errors of single teeth are not computed in transmissions yet: all teeth of a gear are alike";
+            faults.push(document.fault(&format!("{name}.modification.pitch_errors_um"), message));
+        }
+        let Some(spec) = written else { continue };
         match Gear::new(&spec) {
             Ok(gear) => made.push(gear),
             Err(errors) => faults.extend(errors.0.iter().map(|e| geometry_fault(document, Some(name), e))),

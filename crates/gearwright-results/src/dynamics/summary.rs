@@ -7,9 +7,9 @@ use serde::Serialize;
 
 use super::Work;
 use super::{Blow, Difference, Response, Speed, coordinate_names, moving_coordinates};
-use gearwright_case::DynamicsCase;
 use gearwright_case::dynamics::schema::Dynamics;
 use gearwright_case::spur_pair::schema::SpurPair;
+use gearwright_case::{DynamicsCase, Notes};
 
 /// Harmonics of the mesh frequency told.
 const HARMONICS: usize = 6;
@@ -23,6 +23,9 @@ pub struct Summary<'a> {
     version: &'static str,
     /// The case with every default spelled out.
     inputs: &'a Dynamics,
+    /// Warnings and assumptions.
+    #[serde(flatten)]
+    notes: &'a Notes,
     /// The spur-pair case it rests on, with every default; contact cells are those of `inputs`.
     spur_pair: &'a SpurPair,
     model: ModelSummary,
@@ -164,6 +167,7 @@ pub fn summary<'a>(
         program: "gearwright",
         version: env!("CARGO_PKG_VERSION"),
         inputs: &case.inputs,
+        notes: &case.notes,
         spur_pair: &case.statics.inputs,
         model: ModelSummary {
             mean_mesh_force_n: force,

@@ -6,8 +6,8 @@ use lpm::{BranchEnd, Input, LpmError, Model, Response};
 use serde::Serialize;
 
 use super::{BranchResult, Findings, State, SweepResult, TimeResponse};
-use gearwright_case::LumpedPairCase;
 use gearwright_case::lumped_pair::schema::LumpedPair;
+use gearwright_case::{LumpedPairCase, Notes};
 
 /// Harmonics of the mesh frequency told.
 const HARMONICS: usize = 6;
@@ -21,6 +21,9 @@ pub struct Summary<'a> {
     version: &'static str,
     /// The case with every default spelled out.
     inputs: &'a LumpedPair,
+    /// Warnings and assumptions.
+    #[serde(flatten)]
+    notes: &'a Notes,
     /// The pair without its excitation.
     model: ModelSummary,
     /// By state.
@@ -181,6 +184,7 @@ pub fn summary<'a>(
         program: "gearwright",
         version: env!("CARGO_PKG_VERSION"),
         inputs: &case.inputs,
+        notes: &case.notes,
         model: ModelSummary {
             moving_mass_kg: pair.effective_mass(),
             mean_mesh_force_n: pair.mean_force(),

@@ -26,6 +26,8 @@ pub fn summary(case: &RecordingCase, outcome: &Outcome, seconds: f64) -> Json {
         "program": "gearwright",
         "version": env!("CARGO_PKG_VERSION"),
         "inputs": case.inputs,
+        "warnings": case.notes.warnings,
+        "assumptions": case.notes.assumptions,
         "period_turns": case.period_turns,
         "mesh_order": case.rule.mesh_orders.first(),
         "healthy_recordings": outcome.healthy,

@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use super::damage::Effect;
 use super::stress::{LargestRoot, Stresses};
-use gearwright_case::SpurPairCase;
 use gearwright_case::spur_pair::schema::SpurPair;
+use gearwright_case::{Notes, SpurPairCase};
 
 /// Everything the summary holds.
 #[derive(Debug, Serialize)]
@@ -20,6 +20,9 @@ pub struct Summary<'a> {
     pub version: &'static str,
     /// The case with every default spelled out.
     pub inputs: &'a SpurPair,
+    /// Warnings and assumptions.
+    #[serde(flatten)]
+    pub notes: &'a Notes,
     /// What follows from the geometry alone.
     pub geometry: Geometry,
     /// What came out.
@@ -271,9 +274,6 @@ pub fn screen(case: &SpurPairCase, results: &Results, damage: &[Effect], stats: 
     let pair = &case.pair;
     let title = if case.inputs.title.is_empty() { "spur gear pair" } else { &case.inputs.title };
     let _ = writeln!(text, "{title}");
-    for finding in pair.findings() {
-        let _ = writeln!(text, "  note: {finding}");
-    }
     let line = |text: &mut String, name: &str, value: String| {
         let _ = writeln!(text, "  {name:<34} {value}");
     };

@@ -55,6 +55,8 @@ pub fn summary(case: &TransmissionCase, findings: &Findings, times: Times) -> Js
         "program": "gearwright",
         "version": env!("CARGO_PKG_VERSION"),
         "inputs": case.inputs,
+        "warnings": case.notes.warnings,
+        "assumptions": case.notes.assumptions,
         "train": {
             "sun_rpm": rpm(speeds.sun),
             "carrier_rpm": rpm(speeds.carrier),

@@ -10,7 +10,7 @@ use planetary::mesh::{
 };
 
 use super::cache::Cache;
-use super::model::{Laws, bevel_force, mean_force};
+use super::model::{Laws, bevel_force};
 use crate::{AsObserver, RunObserver};
 use gearwright_case::TransmissionCase;
 use gearwright_case::transmission::bevel::BevelStage;
@@ -112,7 +112,7 @@ impl<'a> Site<'a> {
             positions_per_cycle: self.case.inputs.run.steps_per_mesh_cycle as usize,
             origin,
             tolerance: analysis.table_tolerance,
-            ..TableOptions::up_to(analysis.table_load_factor * mean_force(self.case))
+            ..TableOptions::up_to(analysis.table_load_factor * self.case.mean_force())
         }
     }
 

@@ -23,7 +23,7 @@ use rayon::prelude::*;
 use super::RunObserver;
 use cache::Cache;
 use laws::laws;
-use model::{Laws, mean_force, mean_stiffness};
+use model::{Laws, mean_stiffness};
 use signals::{Judge, periods};
 
 /// Natural frequencies told (Hz), at most.
@@ -172,7 +172,7 @@ fn findings(
         angle_deg: place.angle.to_degrees().rem_euclid(360.0),
         named: index < case.named_sensors,
     });
-    let force = mean_force(case);
+    let force = case.mean_force();
     let coordinates = housing.iter().flat_map(|body| body.frequencies.iter().zip(&body.damping_ratios));
     Ok(Findings {
         sensors: sensors.collect(),

@@ -35,16 +35,6 @@ pub struct Laws {
     pub bevel: Option<Arc<dyn MeshLaw>>,
 }
 
-/// Mean force of one mesh of the planetary stage (N).
-#[must_use]
-pub fn mean_force(case: &TransmissionCase) -> f64 {
-    let spec = case.train.spec();
-    let [z_s, z_r] = [&spec.sun, &spec.ring].map(|gear| f64::from(gear.teeth()));
-    // T_s = T_c Z_s / (Z_s + Z_r), shared by the planets; the ring's force is the same by the planet's balance
-    let sun_torque = case.inputs.run.torque_n_m * z_s / (z_s + z_r);
-    sun_torque / spec.sun.base_radius() / case.train.planets() as f64
-}
-
 /// The transmission of a state.
 ///
 /// # Errors
@@ -53,7 +43,7 @@ pub fn spec(case: &TransmissionCase, laws: &Laws, housing: Option<ElasticBody>) 
     let train = &case.train;
     let gears = train.spec();
     let [z_s, z_p, z_r] = [&gears.sun, &gears.planet, &gears.ring].map(|gear| f64::from(gear.teeth()));
-    let force = mean_force(case);
+    let force = case.mean_force();
     let pairs = MeshSite::ALL.map(|site| train.pair(site));
     let damping = |law: &dyn MeshLaw| case.inputs.numerics.mesh_damping_s * mean_stiffness(law, force);
     let dampings = [damping(laws.coast[0].as_ref()), damping(laws.coast[1].as_ref())];

@@ -7,7 +7,7 @@ use clap::{Parser, Subcommand};
 
 use crate::run;
 use gearwright_case::kind::{self, CaseKind};
-use gearwright_case::{self as case, Case, reference, template};
+use gearwright_case::{self as case, Case, Notes, reference, template};
 
 mod hums;
 mod progress;
@@ -70,7 +70,10 @@ pub fn execute(cli: &Cli) -> anyhow::Result<String> {
             let (loaded, file) = flags.load()?;
             run_case(&loaded, &file, flags.out.as_deref(), flags.threads)
         }
-        Command::Check { case } => Ok(format!("{}{}: valid\n", about(&case::load(case)?)?, case.display())),
+        Command::Check { case: file } => {
+            let case = case::load(file)?;
+            Ok(format!("{}{}{}: valid{}\n", about(&case)?, case.notes(), file.display(), with_warnings(case.notes())))
+        }
         Command::Init { kind, file } => init(kind, file.as_deref()),
         Command::Explain { key } => explain(key.as_deref()),
         Command::Schema { kind } => Ok(format!("{}\n", serde_json::to_string_pretty(&(known_kind(kind)?.schema)())?)),
@@ -91,6 +94,8 @@ fn run_case(loaded: &Case, file: &Path, out: Option<&Path>, threads: Option<usiz
         pool = pool.num_threads(count);
     }
     let pool = pool.build().context("threads cannot be started")?;
+    let Notes { warnings, assumptions } = loaded.notes().clone();
+    eprint!("{}", Notes { warnings, ..Notes::default() });
     let observer = progress::Terminal::new();
     let finished = pool.install(|| run::run(loaded, &target, &observer));
     observer.finish();
@@ -101,7 +106,16 @@ fn run_case(loaded: &Case, file: &Path, out: Option<&Path>, threads: Option<usiz
             finished.unusable
         );
     }
-    Ok(format!("{}  results in {}\n", finished.screen, finished.folder.display()))
+    let assumed = Notes { assumptions, ..Notes::default() };
+    Ok(format!("{}{assumed}  results in {}\n", finished.screen, finished.folder.display()))
+}
+
+fn with_warnings(notes: &Notes) -> String {
+    match notes.warnings.len() {
+        0 => String::new(),
+        1 => ", with 1 warning".to_owned(),
+        count => format!(", with {count} warnings"),
+    }
 }
 
 fn init(kind: &str, file: Option<&Path>) -> anyhow::Result<String> {
@@ -119,9 +133,7 @@ fn init(kind: &str, file: Option<&Path>) -> anyhow::Result<String> {
 fn about(case: &Case) -> anyhow::Result<String> {
     Ok(match case {
         Case::SpurPair(case) => {
-            let notes: String = case.pair.findings().iter().map(|f| format!("note: {f}\n")).collect();
-            let (positions, ratio) = (case.mesh_cycles.len(), case.pair.contact_ratio());
-            format!("{notes}{positions} positions, contact ratio {ratio:.3}\n")
+            format!("{} positions, contact ratio {:.3}\n", case.mesh_cycles.len(), case.pair.contact_ratio())
         }
         Case::Recording(case) => {
             let mesh = case.rule.mesh_orders.first().copied().unwrap_or_default();

@@ -41,6 +41,7 @@ pub fn run(case: &SpurPairCase, target: &Path, observer: &dyn RunObserver) -> an
         program: "gearwright",
         version: env!("CARGO_PKG_VERSION"),
         inputs: &case.inputs,
+        notes: &case.notes,
         geometry: summary::geometry(&case.pair),
         results: extrema.clone(),
         damage: &effects,
