@@ -17,6 +17,7 @@ use nalgebra::{Point2, Rotation2, Vector2};
 use crate::error::GeometryError;
 use crate::gear::{GearKind, GearSpec};
 use crate::involute::{involute, involute_at_roll, radius_at_roll, roll_distance};
+use gear_numerics::roots::bisect;
 
 /// How the fillet is made.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -171,11 +172,7 @@ fn rack(spec: &GearSpec, corner: f64, base: f64, half_angle: f64) -> Result<Fill
             && before < 0.0
             && after >= 0.0
         {
-            let (mut low, mut high) = (at(k), at(k + 1));
-            for _ in 0..80 {
-                let middle = 0.5 * (low + high);
-                if outside(middle).is_none_or(|d| d < 0.0) { low = middle } else { high = middle }
-            }
+            let (_, high) = bisect([at(k), at(k + 1)], 80, |t| outside(t).is_none_or(|d| d < 0.0));
             return Ok(Fillet { curve, range: [0.0, high], undercut: true });
         }
     }

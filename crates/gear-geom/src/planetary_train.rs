@@ -21,6 +21,8 @@
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
+use gear_numerics::number::{gcd, lcm};
+
 use crate::error::TrainError;
 use crate::gear::{FlankSide, Gear, GearKind};
 use crate::pair::{GearPair, Member};
@@ -344,7 +346,7 @@ impl PlanetaryTrain {
     #[must_use]
     pub fn hunting_period(&self) -> u64 {
         let [sun, planet] = [&self.spec.sun, &self.spec.planet].map(|gear| self.return_period(gear));
-        sun / gcd(sun, planet) * planet
+        lcm(sun, planet)
     }
 
     /// Turns of the carrier against the ring after which sun, carrier and ring are where they were.
@@ -417,8 +419,4 @@ fn check_places(spec: &PlanetaryTrainSpec) -> Result<(), TrainError> {
         }
     }
     Ok(())
-}
-
-fn gcd(a: u64, b: u64) -> u64 {
-    if b == 0 { a } else { gcd(b, a % b) }
 }

@@ -30,8 +30,7 @@
 
 use crate::error::{HumsError, Result, require_finite, require_len};
 use crate::spectrum::{Spectrum, require_in_range};
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
-use rustfft::num_complex::Complex;
+use gear_numerics::fft::{Complex, ComplexToReal, RealToComplex, real_forward, real_inverse};
 use std::sync::Arc;
 
 /// Which orders count as regular. Orders are cycles per record (per averaging period).
@@ -207,13 +206,12 @@ impl Splitter {
     /// Mesh orders that are zero, missing, or above the Nyquist order `samples / 2`.
     pub fn new(samples: usize, rule: &RemovalRule) -> Result<Self> {
         rule.validate(samples)?;
-        let mut planner = RealFftPlanner::new();
         Ok(Self {
             residual_orders: rule.residual_orders(samples),
             difference_orders: rule.difference_orders(samples),
             rule: rule.clone(),
-            forward: planner.plan_fft_forward(samples),
-            inverse: planner.plan_fft_inverse(samples),
+            forward: real_forward(samples),
+            inverse: real_inverse(samples),
         })
     }
 

@@ -12,9 +12,8 @@
 
 use crate::error::{HumsError, Result, require_finite, require_len};
 use crate::spectrum::{Spectrum, forward};
-use rustfft::{Fft, FftPlanner, num_complex::Complex};
+use gear_numerics::fft::{Complex, Fft, complex_inverse};
 use std::f64::consts::{PI, TAU};
-use std::sync::Arc;
 
 /// Analytic signal `x + i H[x]` of the whole band (mean included).
 ///
@@ -25,7 +24,7 @@ pub fn analytic_signal(signal: &[f64]) -> Result<Vec<Complex<f64>>> {
     require_finite("analytic signal", signal)?;
     let bins = forward(&mut signal.to_vec());
     let highest = bins.len() - 1;
-    Ok(one_sided_inverse(&bins, signal.len(), 0..=highest, inverse_plan(signal.len()).as_ref()))
+    Ok(one_sided_inverse(&bins, signal.len(), 0..=highest, complex_inverse(signal.len()).as_ref()))
 }
 
 /// Envelope `|x + i H[x]|` of the whole band, unit of the signal.
@@ -75,7 +74,7 @@ pub(crate) fn demodulate_bins(
     carrier: usize,
     half_width: usize,
 ) -> Result<Demodulated> {
-    let z = band_analytic(bins, samples, carrier, half_width, inverse_plan(samples).as_ref())?;
+    let z = band_analytic(bins, samples, carrier, half_width, complex_inverse(samples).as_ref())?;
     let mut phase = Vec::with_capacity(samples);
     let mut last = 0.0;
     for (n, value) in z.iter().enumerate() {
@@ -161,11 +160,6 @@ fn one_sided_inverse_into(
     }
     scratch.resize(plan.get_inplace_scratch_len(), zero);
     plan.process_with_scratch(z, scratch);
-}
-
-/// Plan for the way back of the analytic signal.
-pub(crate) fn inverse_plan(samples: usize) -> Arc<dyn Fft<f64>> {
-    FftPlanner::new().plan_fft_inverse(samples)
 }
 
 /// Moduli `|z|`; without the care of `hypot` where squares can neither overflow nor vanish.

@@ -79,7 +79,6 @@ pub mod resample;
 pub mod separation;
 pub mod signal;
 pub mod spectrum;
-mod spline;
 pub mod tachometer;
 pub mod threshold;
 pub mod tsa;

@@ -22,8 +22,8 @@
 
 use crate::error::{HumsError, Result, require_finite, require_len, require_positive};
 use crate::phenomenon::modes::Mode;
+use gear_numerics::fft::Complex;
 use nalgebra::{DMatrix, DVector};
-use rustfft::num_complex::Complex;
 use std::f64::consts::{PI, TAU};
 
 /// Samples at most.

@@ -26,8 +26,8 @@
 //! Verified by `tests/resampling.rs` (orders two and four, scipy, exponential decay with L).
 
 use crate::error::{HumsError, Result, require_finite, require_len, require_positive};
-use crate::spline;
 use crate::tachometer::Shaft;
+use gear_numerics::spline;
 use std::f64::consts::PI;
 
 /// How values between samples are found.

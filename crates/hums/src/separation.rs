@@ -27,6 +27,7 @@
 //! Verified by `tests/separation.rs`.
 
 use crate::error::{HumsError, Result, require_positive};
+use gear_numerics::number::gcd;
 use std::f64::consts::PI;
 
 /// Weight of the samples about a pass.
@@ -282,8 +283,4 @@ impl Sums {
             coverage: (least, most),
         })
     }
-}
-
-fn gcd(a: usize, b: usize) -> usize {
-    if b == 0 { a } else { gcd(b, a % b) }
 }

@@ -13,8 +13,7 @@
 //! Verified by `tests/spectra.rs` (analytic lines, Parseval, `scipy.signal`).
 
 use crate::error::{HumsError, Result, require_finite, require_len, require_positive};
-use realfft::RealFftPlanner;
-use rustfft::num_complex::Complex;
+use gear_numerics::fft::{self, Complex};
 use std::f64::consts::PI;
 
 /// Window applied before a transform; all are periodic (DFT-even).
@@ -143,7 +142,7 @@ impl Spectrum {
 
 /// Real transform of a non-empty buffer (destroyed).
 pub(crate) fn forward(input: &mut [f64]) -> Vec<Complex<f64>> {
-    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(input.len());
+    let plan = fft::real_forward(input.len());
     let mut bins = plan.make_output_vec();
     // Lengths come from the plan itself, so this cannot fail; a failure would leave zeros.
     let outcome = plan.process(input, &mut bins);
@@ -202,7 +201,7 @@ pub fn spectrogram(signal: &[f64], rate: f64, segment: usize, hop: usize, window
     require_finite("spectrogram", signal)?;
     let weights = window.samples(segment);
     let power: f64 = weights.iter().map(|w| w * w).sum();
-    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(segment);
+    let plan = fft::real_forward(segment);
     let (mut input, mut bins) = (plan.make_input_vec(), plan.make_output_vec());
     let mut scratch = plan.make_scratch_vec();
     let rows = (signal.len() - segment) / hop + 1;

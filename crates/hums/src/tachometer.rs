@@ -22,7 +22,7 @@
 //! pulses; more pulses per revolution cure that. Verified by `tests/tachometer.rs`.
 
 use crate::error::{HumsError, Result, require_len, require_positive};
-use crate::spline;
+use gear_numerics::{roots::bisect, spline};
 
 /// Which flank of a pulse carries the time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -410,15 +410,7 @@ impl Shaft {
         let i = self.times.partition_point(|x| *x <= t);
         let i = i.clamp(1, self.times.len() - 1) - 1;
         let (_, h, times, slopes) = self.local(i, self.turns[i]);
-        let (mut low, mut high) = (0.0_f64, 1.0_f64);
-        for _ in 0..60 {
-            let u = 0.5 * (low + high);
-            if spline::hermite(u, h, times, slopes) <= t {
-                low = u;
-            } else {
-                high = u;
-            }
-        }
+        let (low, _) = bisect([0.0, 1.0], 60, |u| spline::hermite(u, h, times, slopes) <= t);
         Some(self.turns[i] + low * h)
     }
 

@@ -13,6 +13,7 @@
 
 use crate::curve::{Curve, SAME_PHASE};
 use crate::error::{LpmError, check};
+use gear_numerics::number::lcm;
 
 /// Longest common period accepted (mesh cycles).
 const MAX_PERIOD: usize = 100_000;
@@ -50,7 +51,7 @@ impl Excitation {
     /// From local mesh stiffness (N/m, positive everywhere) and static transmission error (m).
     pub fn new(mesh_stiffness: &Curve, transmission_error: &Curve) -> Result<Self, LpmError> {
         let (a, b) = (mesh_stiffness.period(), transmission_error.period());
-        let period = a / gcd(a, b) * b;
+        let period = lcm(a, b);
         if period > MAX_PERIOD {
             let reason = "their common period is longer than 100000 mesh cycles";
             return Err(LpmError::Period { first: a, second: b, reason });
@@ -126,10 +127,6 @@ impl Excitation {
         let (error, error_slope) = self.error.value_and_slope_within(tau, segment.error);
         Point { stiffness, stiffness_slope, error, error_slope }
     }
-}
-
-fn gcd(a: usize, b: usize) -> usize {
-    if b == 0 { a.max(1) } else { gcd(b, a % b) }
 }
 
 #[cfg(test)]

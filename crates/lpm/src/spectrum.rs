@@ -8,7 +8,7 @@
 //! Tests: unit tests below.
 
 use crate::error::{LpmError, check};
-use realfft::RealFftPlanner;
+use gear_numerics::fft;
 use std::f64::consts::TAU;
 
 /// Amplitude spectrum.
@@ -30,7 +30,7 @@ impl Spectrum {
         if n < 2 {
             return Err(LpmError::Length { what: "samples of a spectrum", found: n, needed: "at least 2" });
         }
-        let fft = RealFftPlanner::<f64>::new().plan_fft_forward(n);
+        let fft = fft::real_forward(n);
         let (mut input, mut output) = (samples.to_vec(), fft.make_output_vec());
         fft.process(&mut input, &mut output).map_err(|_| LpmError::Singular { place: "Fourier transform" })?;
         let lines = output.len();

@@ -12,11 +12,11 @@ pub mod gear;
 pub mod trend;
 
 use crate::difference::{RemovalRule, SignalSet, SplitBuffers, Splitter};
-use crate::envelope::{AnalyticBuffers, band_analytic_into, inverse_plan, moduli_into};
+use crate::envelope::{AnalyticBuffers, band_analytic_into, moduli_into};
 use crate::error::{HumsError, Result, require_finite};
 use crate::moments::{MomentAccumulator, Moments};
 use basic::{CrestDefinition, TeagerAccumulator};
-use rustfft::Fft;
+use gear_numerics::fft::{Fft, complex_inverse};
 use std::sync::Arc;
 
 /// Which signal an indicator was computed from.
@@ -311,7 +311,7 @@ impl GearAnalyzer {
     /// # Errors
     /// As [`Splitter::new`].
     pub fn new(samples: usize, rule: &RemovalRule) -> Result<Self> {
-        Ok(Self { splitter: Splitter::new(samples, rule)?, inverse: inverse_plan(samples) })
+        Ok(Self { splitter: Splitter::new(samples, rule)?, inverse: complex_inverse(samples) })
     }
 
     /// All indicators of an average.

@@ -12,7 +12,7 @@
 
 use super::ClosedForm;
 use crate::error::{HumsError, Result, require_positive};
-use rustfft::num_complex::Complex;
+use gear_numerics::fft::Complex;
 use std::f64::consts::TAU;
 
 /// Modes at most: the number of terms of the eighth moment grows as the eighth power.

@@ -2,6 +2,7 @@
 
 use super::{Curve, Interpolation, Piece, Repr};
 use crate::error::{LpmError, check};
+use gear_numerics::spline::periodic_second_derivatives;
 
 impl Curve {
     /// The same value everywhere.
@@ -65,7 +66,10 @@ impl Curve {
                 (0..n).map(|i| Piece { start: phases[i], a: [values[i], slope[i], 0.0, 0.0], kink: true }).collect()
             }
             Interpolation::Spline => {
-                let m = cyclic_spline(&width, &slope)?;
+                let m = periodic_second_derivatives(&width, &slope);
+                if !m.iter().all(|v| v.is_finite()) {
+                    return Err(LpmError::Singular { place: "periodic spline" });
+                }
                 (0..n)
                     .map(|i| {
                         let (m0, m1, h) = (m[i], m[(i + 1) % n], width[i]);
@@ -126,36 +130,4 @@ fn check_table(period: usize, phases: &[f64], values: &[f64], least: usize) -> R
         return Err(LpmError::Table { index, phase: phases[index], reason: "coincides with the first point" });
     }
     Ok(())
-}
-
-/// Second derivatives of the periodic cubic spline (cyclic tridiagonal system by Sherman-Morrison).
-fn cyclic_spline(width: &[f64], slope: &[f64]) -> Result<Vec<f64>, LpmError> {
-    let n = width.len();
-    let prev = |i: usize| (i + n - 1) % n;
-    let rhs: Vec<f64> = (0..n).map(|i| 6.0 * (slope[i] - slope[prev(i)])).collect();
-    let mut diag: Vec<f64> = (0..n).map(|i| 2.0 * (width[prev(i)] + width[i])).collect();
-    let corner = width[n - 1];
-    let g = -diag[0];
-    diag[0] -= g;
-    diag[n - 1] -= corner * corner / g;
-    let solve = |mut r: Vec<f64>| {
-        let mut d = diag.clone();
-        for i in 1..n {
-            let f = width[i - 1] / d[i - 1];
-            d[i] -= f * width[i - 1];
-            r[i] -= f * r[i - 1];
-        }
-        r[n - 1] /= d[n - 1];
-        for i in (0..n - 1).rev() {
-            r[i] = (r[i] - width[i] * r[i + 1]) / d[i];
-        }
-        r
-    };
-    let y = solve(rhs);
-    let mut u = vec![0.0; n];
-    (u[0], u[n - 1]) = (g, corner);
-    let z = solve(u);
-    let factor = (y[0] + corner / g * y[n - 1]) / (1.0 + z[0] + corner / g * z[n - 1]);
-    let m: Vec<f64> = y.iter().zip(&z).map(|(y, z)| y - factor * z).collect();
-    if m.iter().all(|v| v.is_finite()) { Ok(m) } else { Err(LpmError::Singular { place: "periodic spline" }) }
 }
