@@ -13,7 +13,7 @@ fn load(name: &str) -> SpurPairCase {
 
 fn solve(case: &SpurPairCase, model: &PairModel, mesh_cycles: Vec<f64>) -> Vec<PositionResult> {
     let torques = vec![case.inputs.load.torque_n_m];
-    let request = StaticsRequest { mesh_cycles, torques, stiffness_difference: false, keep_pressure: false };
+    let request = StaticsRequest::new(mesh_cycles, torques);
     model.solve(&request, &()).unwrap().results.remove(0)
 }
 

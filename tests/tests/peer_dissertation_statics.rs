@@ -15,11 +15,8 @@ fn load(name: &str) -> SpurPairCase {
 
 fn solve(case: &SpurPairCase, count: u32, torques: Vec<f64>) -> Vec<Vec<PositionResult>> {
     let model = PairModel::new(&case.pair, &case.options).unwrap();
-    let mesh_cycles = (0..count).map(|k| f64::from(k) / f64::from(count)).collect();
-    let results = model
-        .solve(&StaticsRequest { mesh_cycles, torques, stiffness_difference: false, keep_pressure: false }, &())
-        .unwrap()
-        .results;
+    let mesh_cycles: Vec<f64> = (0..count).map(|k| f64::from(k) / f64::from(count)).collect();
+    let results = model.solve(&StaticsRequest::new(mesh_cycles, torques), &()).unwrap().results;
     assert!(results.iter().flatten().all(|r| r.status == PositionStatus::Converged));
     results
 }

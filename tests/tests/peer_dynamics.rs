@@ -40,12 +40,7 @@ fn options() -> DynamicsOptions {
 fn peer_lumped_model_fed_with_the_same_stiffness() {
     const STEPS: usize = 200;
     let model = model();
-    let positions = StaticsRequest {
-        mesh_cycles: (0..STEPS).map(|k| k as f64 / STEPS as f64).collect(),
-        torques: vec![TORQUE],
-        stiffness_difference: false,
-        keep_pressure: false,
-    };
+    let positions = StaticsRequest::new((0..STEPS).map(|k| k as f64 / STEPS as f64).collect::<Vec<_>>(), [TORQUE]);
     let still = model.solve(&positions, &()).unwrap().results.remove(0);
     let stiffness: Vec<f64> = still.iter().map(|r| r.stiffness_local_slope.unwrap()).collect();
     let error: Vec<f64> = still.iter().map(|r| r.static_transmission_error).collect();

@@ -70,12 +70,10 @@ impl Scene {
     fn curve(&self, model: &PairModel) -> anyhow::Result<Vec<f64>> {
         let (from, to, per_cycle) = CYCLES;
         let count = ((to - from) * per_cycle).round() as u32;
-        let request = StaticsRequest {
-            mesh_cycles: (0..=count).map(|k| from + f64::from(k) / per_cycle).collect(),
-            torques: vec![self.case.inputs.load.torque_n_m],
-            stiffness_difference: false,
-            keep_pressure: false,
-        };
+        let request = StaticsRequest::new(
+            (0..=count).map(|k| from + f64::from(k) / per_cycle).collect::<Vec<_>>(),
+            [self.case.inputs.load.torque_n_m],
+        );
         let series = model.solve(&request, &())?;
         Ok(series.results.iter().flatten().map(|r| r.static_transmission_error * 1e6).collect())
     }

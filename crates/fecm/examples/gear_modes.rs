@@ -9,7 +9,11 @@ use fecm::{FaceModel, GearModes, Material, MeshDensity, ModesOptions};
 use gear_geom::{FlankSide, Gear, GearSpec};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let gear = Gear::new(&GearSpec { teeth: 27, tip_radius: 87e-3, root_radius: 73.5e-3, ..GearSpec::default() })?;
+    let gear = Gear::new(&GearSpec::standard(27, 6e-3).with(|spec| {
+        spec.tip_radius = 87e-3;
+        spec.root_radius = 73.5e-3;
+        spec.facewidth = 16e-3;
+    }))?;
     let options = BodyOptions {
         mesh: MeshDensity::default(),
         face: FaceModel::Solid { order: 6 },

@@ -14,12 +14,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         _ => PairModelOptions::default().face,
     };
     let model = PairModel::new(&pair, &PairModelOptions { face, ..PairModelOptions::default() })?;
-    let request = StaticsRequest {
-        mesh_cycles: (0..50).map(|k| f64::from(k) / 50.0).collect(),
-        torques: vec![424.0],
-        stiffness_difference: true,
-        keep_pressure: false,
-    };
+    let request = StaticsRequest::one_cycle(50, 424.0).with_stiffness_difference();
     let series = model.solve(&request, &())?;
     println!("mesh cycle  STE (um)  k_l (N/um)  differences  pairs  peak (MPa)  width (mm)");
     for at in &series.results[0] {

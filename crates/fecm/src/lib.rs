@@ -18,17 +18,12 @@
 //! ```
 //! use fecm::{FaceModel, PairModel, PairModelOptions, StaticsRequest};
 //! use gear_geom::{Gear, GearPair, GearSpec};
-//! // the 25-tooth, 6 mm gear that is `GearSpec`'s default, with itself, in plane stress
-//! let gear = Gear::new(&GearSpec::default())?;
+//! // a 25-tooth gear of module 6 mm and standard proportions with itself, in plane stress
+//! let gear = Gear::new(&GearSpec::standard(25, 6e-3))?;
 //! let pair = GearPair::new(gear.clone(), gear, 150.1e-3)?;
 //! let options = PairModelOptions { face: FaceModel::PlaneStress, ..PairModelOptions::default() };
 //! let model = PairModel::new(&pair, &options)?;
-//! let request = StaticsRequest {
-//!     mesh_cycles: vec![0.0, 0.5],
-//!     torques: vec![200.0],
-//!     stiffness_difference: false,
-//!     keep_pressure: false,
-//! };
+//! let request = StaticsRequest::new([0.0, 0.5], [200.0]);
 //! let series = model.solve(&request, &())?;
 //! let [single, double] = &series.results[0][..] else { unreachable!() };
 //! assert_eq!((single.loaded_pairs().count(), double.loaded_pairs().count()), (1, 2));

@@ -145,7 +145,7 @@ fn options(face: FaceModel, contact: bool) -> PairModelOptions {
 
 fn request() -> StaticsRequest {
     let mesh_cycles = CYCLES.to_vec();
-    StaticsRequest { mesh_cycles, torques: vec![TORQUE], stiffness_difference: true, keep_pressure: true }
+    StaticsRequest::new(mesh_cycles, [TORQUE]).with_stiffness_difference().keeping_pressure()
 }
 
 fn solve(model: &PairModel) -> Vec<PositionResult> {

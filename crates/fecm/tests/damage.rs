@@ -14,8 +14,8 @@ use fecm::ring::{Arc, ring_compliance};
 use fecm::statics::{PairModel, PairModelOptions, PositionResult, PositionStatus, StaticsRequest};
 use fecm::{FaceModel, FecmError, Material};
 use gear_geom::{
-    BrokenCorner, CrackLength, CrackPath, CrackStart, Damage, FlankSide, Gear, GearPair, GearSpec, MeasuredDeviation,
-    Member, Pit, ProfileMeasure, RootCrack, ToothDamage,
+    BrokenCorner, CrackLength, CrackPath, CrackStart, Damage, FlankSide, Gear, GearPair, MeasuredDeviation, Member,
+    Pit, ProfileMeasure, RootCrack, ToothDamage,
 };
 use nalgebra::Point2;
 
@@ -54,12 +54,7 @@ fn corner(at_positive_end: bool, length: f64, height: f64) -> ToothDamage {
 }
 
 fn request(mesh_cycles: &[f64]) -> StaticsRequest {
-    StaticsRequest {
-        mesh_cycles: mesh_cycles.to_vec(),
-        torques: vec![TORQUE],
-        stiffness_difference: false,
-        keep_pressure: true,
-    }
+    StaticsRequest::new(mesh_cycles.to_vec(), [TORQUE]).keeping_pressure()
 }
 
 fn solve(model: &PairModel, mesh_cycles: &[f64]) -> Vec<PositionResult> {
@@ -90,7 +85,9 @@ fn invariant_damage_of_no_size_is_healthy_to_the_bit() {
 fn invariant_wear_all_over_a_flank_is_a_pitch_error() {
     let depth = 6e-6;
     let errors: Vec<f64> = (0..25).map(|tooth| if tooth == 0 { depth } else { 0.0 }).collect();
-    let spec = GearSpec { pitch_errors: errors, ..gear(25).spec().clone() };
+    let spec = gear(25).spec().clone().with(|spec| {
+        spec.pitch_errors = errors;
+    });
     let erroneous = GearPair::new(Gear::new(&spec).unwrap(), gear(31), pair().centre_distance()).unwrap();
     for face in [FaceModel::PlaneStrain, FaceModel::Solid { order: 4 }] {
         let healthy = PairModel::new(&pair(), &options(face)).unwrap();

@@ -53,12 +53,7 @@ fn rms(values: impl Iterator<Item = f64>) -> f64 {
 fn invariant_slow_motion_is_the_static_answer() {
     let model = model();
     let steps = 40;
-    let request = StaticsRequest {
-        mesh_cycles: (0..steps).map(|k| f64::from(k) / f64::from(steps)).collect(),
-        torques: vec![TORQUE],
-        stiffness_difference: false,
-        keep_pressure: false,
-    };
+    let request = StaticsRequest::one_cycle(steps, TORQUE);
     let still = model.solve(&request, &()).unwrap().results.remove(0);
     for integrator in [Integrator::AverageAcceleration, Integrator::GeneralizedAlpha { spectral_radius: 0.5 }] {
         let options = DynamicsOptions { integrator, ..options(DAMPED) };
@@ -95,12 +90,7 @@ fn free_vibration(
 }
 
 fn frequency_of(model: &PairModel, options: &DynamicsOptions) -> f64 {
-    let request = StaticsRequest {
-        mesh_cycles: vec![0.0],
-        torques: vec![TORQUE],
-        stiffness_difference: false,
-        keep_pressure: false,
-    };
+    let request = StaticsRequest::new([0.0], [TORQUE]);
     let stiffness = model.solve(&request, &()).unwrap().results[0][0].stiffness_local_slope.unwrap();
     let radius = model.pairing().base_radius(1);
     (stiffness * radius * radius / options.rotors[1].inertia.polar).sqrt() / (2.0 * std::f64::consts::PI)
@@ -451,10 +441,9 @@ fn bad_requests_are_explained() {
 fn zero_backlash_touches_on_both_sides() {
     let exact = |teeth| {
         let module = 6e-3;
-        let spec = gear_geom::GearSpec {
-            thickness: gear_geom::ToothThickness::AtReference(0.5 * std::f64::consts::PI * module),
-            ..gear(teeth).spec().clone()
-        };
+        let spec = gear(teeth).spec().clone().with(|spec| {
+            spec.thickness = gear_geom::ToothThickness::AtReference(0.5 * std::f64::consts::PI * module);
+        });
         gear_geom::Gear::new(&spec).unwrap()
     };
     let pair = GearPair::new(exact(25), exact(31), 168e-3).unwrap();

@@ -26,8 +26,7 @@ fn solve_and_check(pair: &GearPair, face: FaceModel, torque: f64, name: &str) {
     options.contact.face_cells = 12;
     let model = PairModel::new(pair, &options).unwrap_or_else(|e| panic!("{name}: {e}"));
     let mesh_cycles = vec![0.0, 0.2, 0.4, 0.6, 0.8];
-    let request =
-        StaticsRequest { mesh_cycles, torques: vec![torque], stiffness_difference: false, keep_pressure: true };
+    let request = StaticsRequest::new(mesh_cycles, [torque]).keeping_pressure();
     for at in &model.solve(&request, &()).unwrap_or_else(|e| panic!("{name}: {e}")).results[0] {
         let place = format!("{name} at {}: {:?}", at.mesh_cycle, at.status);
         let usable = matches!(at.status, PositionStatus::Converged | PositionStatus::FilletContact);
@@ -80,12 +79,9 @@ fn extreme_torque() {
         let model =
             PairModel::new(&pair, &PairModelOptions { face: FaceModel::PlaneStrain, ..PairModelOptions::default() })
                 .unwrap();
-        let request = StaticsRequest {
-            mesh_cycles: vec![0.0, 0.5],
-            torques: vec![torque * USUAL.nominal_torque(&pair)],
-            stiffness_difference: true,
-            keep_pressure: true,
-        };
+        let request = StaticsRequest::new([0.0, 0.5], [torque * USUAL.nominal_torque(&pair)])
+            .with_stiffness_difference()
+            .keeping_pressure();
         for at in &model.solve(&request, &()).unwrap().results[0] {
             assert_eq!(at.status, PositionStatus::Overloaded);
             assert!(at.static_transmission_error.is_finite() && at.peak_pressure().is_finite());

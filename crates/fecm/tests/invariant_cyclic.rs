@@ -12,13 +12,12 @@ use gear_geom::{FlankSide, Gear, GearSpec};
 use nalgebra::{Point2, Rotation2, Vector2};
 
 fn gear() -> Gear {
-    Gear::new(&GearSpec {
-        teeth: 17,
-        tip_radius: 57e-3,
-        root_radius: 43.5e-3,
-        rim_radius: 25e-3,
-        ..GearSpec::default()
-    })
+    Gear::new(&GearSpec::standard(17, 6e-3).with(|spec| {
+        spec.tip_radius = 57e-3;
+        spec.root_radius = 43.5e-3;
+        spec.rim_radius = 25e-3;
+        spec.facewidth = 16e-3;
+    }))
     .unwrap()
 }
 

@@ -19,8 +19,7 @@ fn coarse(face: FaceModel) -> PairModelOptions {
 
 fn solve(pair: &GearPair, options: &PairModelOptions, mesh_cycles: Vec<f64>, torque: f64) -> Vec<PositionResult> {
     let model = PairModel::new(pair, options).unwrap();
-    let request =
-        StaticsRequest { mesh_cycles, torques: vec![torque], stiffness_difference: false, keep_pressure: true };
+    let request = StaticsRequest::new(mesh_cycles, [torque]).keeping_pressure();
     model.solve(&request, &()).unwrap().results.remove(0)
 }
 
@@ -95,12 +94,7 @@ fn invariant_hub_reactions_balance_contact_forces_and_torque() {
         options.wheel.bore = BoreCondition::ElasticHub { stiffness };
         let model = PairModel::new(&pair, &options).unwrap();
         let mirrored = model.stats().symmetric && matches!(face, FaceModel::Solid { .. });
-        let request = StaticsRequest {
-            mesh_cycles: vec![0.0, 0.45, 0.9],
-            torques: vec![TORQUE],
-            stiffness_difference: false,
-            keep_pressure: true,
-        };
+        let request = StaticsRequest::new([0.0, 0.45, 0.9], [TORQUE]).keeping_pressure();
         for at in &model.solve(&request, &()).unwrap().results[0] {
             assert!(at.stats.torque_residual < 1e-9, "{face:?} {}: {}", at.mesh_cycle, at.stats.torque_residual);
             assert!(at.stats.solver.kkt_violation < 1e-9 && at.stats.solver.complementarity < 1e-9);
@@ -226,12 +220,9 @@ fn invariant_matching_depth() {
 #[test]
 fn invariant_threads_do_not_change_a_bit() {
     let pair = pair(25, 31);
-    let request = StaticsRequest {
-        mesh_cycles: (0..20).map(|k| f64::from(k) / 20.0).collect(),
-        torques: vec![20.0, TORQUE],
-        stiffness_difference: true,
-        keep_pressure: true,
-    };
+    let request = StaticsRequest::new((0..20).map(|k| f64::from(k) / 20.0).collect::<Vec<_>>(), [20.0, TORQUE])
+        .with_stiffness_difference()
+        .keeping_pressure();
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
@@ -263,12 +254,7 @@ fn invariant_solvers_agree_on_gear_contact() {
 fn invariant_tangent_equals_differences_and_work() {
     let model = PairModel::new(&pair(25, 31), &coarse(FaceModel::PlaneStrain)).unwrap();
     let torques: Vec<f64> = (0..=40).map(|k| TORQUE * (0.9 + 0.005 * f64::from(k))).collect();
-    let request = StaticsRequest {
-        mesh_cycles: vec![0.0],
-        torques: torques.clone(),
-        stiffness_difference: true,
-        keep_pressure: false,
-    };
+    let request = StaticsRequest::new([0.0], torques.clone()).with_stiffness_difference();
     let results = model.solve(&request, &()).unwrap().results;
     let radius = model.pairing().base_radius(1);
     // integral of compliance over the force gives the change of transmission error

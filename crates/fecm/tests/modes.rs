@@ -465,13 +465,12 @@ fn invariant_default_tolerance() {
 
 #[test]
 fn extreme_gears_have_modes() {
-    let thin_rim = Gear::new(&GearSpec {
-        teeth: 40,
-        tip_radius: 126e-3,
-        root_radius: 112.5e-3,
-        rim_radius: 110e-3,
-        ..GearSpec::default()
-    })
+    let thin_rim = Gear::new(&GearSpec::standard(40, 6e-3).with(|spec| {
+        spec.tip_radius = 126e-3;
+        spec.root_radius = 112.5e-3;
+        spec.rim_radius = 110e-3;
+        spec.facewidth = 16e-3;
+    }))
     .unwrap();
     for (name, gear, face, width) in [
         ("few teeth", common::gear(12), FaceModel::Solid { order: 2 }, WIDTH),
@@ -509,17 +508,15 @@ fn extreme_requests_are_refused() {
 /// `m r_a^2` is 0.0024 kg m^2.)
 #[test]
 fn peer_dissertation_table_3_2_pinion() {
-    let pinion = Gear::new(&GearSpec {
-        teeth: 27,
-        module: 2.0 * 88.9e-3 / 62.0,
-        pressure_angle: 24.6_f64.to_radians(),
-        thickness: ToothThickness::AtReference(4.52e-3),
-        tip_radius: 0.5 * 84.05e-3,
-        root_radius: 0.5 * 70.76e-3,
-        rim_radius: 0.5 * 50.8e-3,
-        fillet: FilletSpec::Rack { tip_radius: 0.86e-3 },
-        ..GearSpec::default()
-    })
+    let pinion = Gear::new(&GearSpec::standard(27, 2.0 * 88.9e-3 / 62.0).with(|spec| {
+        spec.pressure_angle = 24.6_f64.to_radians();
+        spec.thickness = ToothThickness::AtReference(4.52e-3);
+        spec.tip_radius = 0.5 * 84.05e-3;
+        spec.root_radius = 0.5 * 70.76e-3;
+        spec.rim_radius = 0.5 * 50.8e-3;
+        spec.fillet = FilletSpec::Rack { tip_radius: 0.86e-3 };
+        spec.facewidth = 16e-3;
+    }))
     .unwrap();
     let sector = SectorMesh::new(&pinion, &MeshDensity::default(), "pinion").unwrap();
     let inertia = BodyInertia::of_gear(&sector, 27, 34.925e-3, Material::STEEL.density);

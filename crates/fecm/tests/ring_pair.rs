@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use fecm::{ContactOptions, FaceModel, PairModel, PairModelOptions, PositionResult, PositionStatus, StaticsRequest};
 use gear_geom::{
-    Damage, Gear, GearPair, GearSpec, Member, MeshSite, Pit, PlanetaryTrain, ProfileMeasure, RootCrack, ToothDamage,
+    Damage, Gear, GearPair, Member, MeshSite, Pit, PlanetaryTrain, ProfileMeasure, RootCrack, ToothDamage,
 };
 
 #[path = "../../gear-geom/tests/common/train.rs"]
@@ -27,8 +27,7 @@ fn plane_model() -> &'static PairModel {
 
 fn solve(model: &PairModel, mesh_cycles: Vec<f64>, force: f64) -> Vec<PositionResult> {
     let torque = force * model.pairing().base_radius(1);
-    let request =
-        StaticsRequest { mesh_cycles, torques: vec![torque], stiffness_difference: false, keep_pressure: false };
+    let request = StaticsRequest::new(mesh_cycles, [torque]);
     let results = model.solve(&request, &()).unwrap().results.remove(0);
     for result in &results {
         assert_eq!(result.status, PositionStatus::Converged, "{}", result.mesh_cycle);
@@ -66,7 +65,12 @@ fn invariant_equilibrium_and_contact_ratio() {
 #[test]
 fn invariant_plane_brackets_solid() {
     let mut spec = train::dissertation_spec();
-    let narrow = |gear: &Gear| Gear::new(&GearSpec { facewidth: 25.4e-3, ..gear.spec().clone() }).unwrap();
+    let narrow = |gear: &Gear| {
+        Gear::new(&gear.spec().clone().with(|spec| {
+            spec.facewidth = 25.4e-3;
+        }))
+        .unwrap()
+    };
     (spec.sun, spec.planet) = (narrow(&spec.sun), narrow(&spec.planet));
     let pair = PlanetaryTrain::new(&spec).unwrap().pair(MeshSite::PlanetRing).clone();
     let deflection = |face: FaceModel| {

@@ -256,12 +256,7 @@ fn invariant_transmission_error_of_a_corner_crack() {
         healthy.with_damage(&[vec![damage], vec![]])
     };
     let solve = |model: &PairModel, torques: &[f64]| {
-        let request = StaticsRequest {
-            mesh_cycles: vec![0.0, 0.3],
-            torques: torques.to_vec(),
-            stiffness_difference: false,
-            keep_pressure: false,
-        };
+        let request = StaticsRequest::new([0.0, 0.3], torques.to_vec());
         model.solve(&request, &()).unwrap().results
     };
     let ste =

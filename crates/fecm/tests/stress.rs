@@ -181,12 +181,7 @@ fn invariant_curved_crack() {
 }
 
 fn solve(model: &PairModel, mesh_cycles: &[f64]) -> Vec<PositionResult> {
-    let request = StaticsRequest {
-        mesh_cycles: mesh_cycles.to_vec(),
-        torques: vec![TORQUE],
-        stiffness_difference: false,
-        keep_pressure: true,
-    };
+    let request = StaticsRequest::new(mesh_cycles.to_vec(), [TORQUE]).keeping_pressure();
     model.solve(&request, &()).unwrap().results.remove(0)
 }
 

@@ -241,19 +241,16 @@ impl BevelPair {
             let teeth = self.virtual_teeth()[i].round();
             let reference = 0.5 * module * teeth;
             let root_radius = reference + addenda[i] - 1.125 * depth;
-            Gear::new(&GearSpec {
-                teeth: teeth as u32,
-                module,
-                pressure_angle: self.transverse_pressure_angle(),
-                thickness: ToothThickness::AtReference(thickness[i]),
-                tip_radius: reference + addenda[i],
-                root_radius,
-                rim_radius: root_radius - 3.0 * module,
-                facewidth,
-                fillet: FilletSpec::Rack { tip_radius: 0.125 * depth },
-                tip_round: 0.03 * module,
-                ..GearSpec::default()
-            })
+            Gear::new(&GearSpec::standard(teeth as u32, module).with(|spec| {
+                spec.pressure_angle = self.transverse_pressure_angle();
+                spec.thickness = ToothThickness::AtReference(thickness[i]);
+                spec.tip_radius = reference + addenda[i];
+                spec.root_radius = root_radius;
+                spec.rim_radius = root_radius - 3.0 * module;
+                spec.facewidth = facewidth;
+                spec.fillet = FilletSpec::Rack { tip_radius: 0.125 * depth };
+                spec.tip_round = 0.03 * module;
+            }))
         });
         let [pinion, gear] = gears;
         let (pinion, gear) = (pinion?, gear?);

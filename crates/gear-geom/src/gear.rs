@@ -68,14 +68,31 @@ pub enum ToothThickness {
 }
 
 /// Specification of a gear, SI units.
+///
+/// Begin with [`GearSpec::standard`], which scales every size with the module, then set what differs. Teeth and module are fixed from there
+/// on, so that no size of another module can be left behind:
+///
+/// ```
+/// use gear_geom::{Gear, GearSpec, ToothThickness};
+///
+/// let mut spec = GearSpec::standard(27, 5e-3);
+/// spec.facewidth = 30e-3;
+/// spec.thickness = ToothThickness::ProfileShift(0.1);
+/// let gear = Gear::new(&spec)?;
+/// assert!((gear.tip_radius() - (67.5e-3 + 5e-3)).abs() < 1e-12);
+/// # Ok::<(), gear_geom::GeometryErrors>(())
+/// ```
+///
+/// ```compile_fail
+/// // a gear of module 5 mm with the fillet of module 6 mm cannot be written
+/// let spec = gear_geom::GearSpec { module: 5e-3, ..gear_geom::GearSpec::standard(25, 6e-3) };
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct GearSpec {
+    pub(crate) teeth: u32,
+    pub(crate) module: f64,
     /// External or internal.
     pub kind: GearKind,
-    /// Number of teeth, 6 to 2000.
-    pub teeth: u32,
-    /// Module (m): reference diameter per tooth.
-    pub module: f64,
     /// Transverse pressure angle at the reference circle (rad), 10 to 35 degrees.
     pub pressure_angle: f64,
     /// Tooth thickness.
@@ -98,28 +115,65 @@ pub struct GearSpec {
     pub pitch_errors: Vec<f64>,
 }
 
-impl Default for GearSpec {
-    /// A 25-tooth gear of module 6 mm and ISO 53 profile A proportions, 60 mm bore, 16 mm face.
-    fn default() -> Self {
+impl GearSpec {
+    /// External gear of `teeth` teeth (6 to 2000) and `module` (m, reference diameter per tooth) with the basic rack of ISO 53 profile A:
+    /// 20 degrees, addendum 1, dedendum 1.25 and tool tip radius 0.38 modules, no profile shift.
+    ///
+    /// ISO 53 says nothing of the rest: facewidth 10 modules, bore 0.4 of the reference circle, tip round 0.02 modules, no modifications.
+    #[must_use]
+    pub fn standard(teeth: u32, module: f64) -> Self {
+        let reference = 0.5 * module * f64::from(teeth);
         Self {
+            teeth,
+            module,
             kind: GearKind::External,
-            teeth: 25,
-            module: 6e-3,
             pressure_angle: 20_f64.to_radians(),
             thickness: ToothThickness::ProfileShift(0.0),
-            tip_radius: 81e-3,
-            root_radius: 67.5e-3,
-            rim_radius: 30e-3,
-            facewidth: 16e-3,
-            fillet: FilletSpec::Rack { tip_radius: 0.38 * 6e-3 },
-            tip_round: 0.12e-3,
+            tip_radius: reference + module,
+            root_radius: reference - 1.25 * module,
+            rim_radius: 0.4 * reference,
+            facewidth: 10.0 * module,
+            fillet: FilletSpec::Rack { tip_radius: 0.38 * module },
+            tip_round: 0.02 * module,
             modification: FlankModification::default(),
             pitch_errors: Vec::new(),
         }
     }
-}
 
-impl GearSpec {
+    /// Ring (internal gear) of the same rack: tooth space of the external gear, tips 1 module inside and root 1.25 modules outside the
+    /// reference circle, circular fillet of 0.2 modules, rim 3 modules thick.
+    #[must_use]
+    pub fn standard_ring(teeth: u32, module: f64) -> Self {
+        let reference = 0.5 * module * f64::from(teeth);
+        Self {
+            kind: GearKind::Internal,
+            tip_radius: reference - module,
+            root_radius: reference + 1.25 * module,
+            rim_radius: reference + 4.25 * module,
+            fillet: FilletSpec::Circular { radius: 0.2 * module },
+            ..Self::standard(teeth, module)
+        }
+    }
+
+    /// The same with changes: `GearSpec::standard(27, 5e-3).with(|gear| gear.facewidth = 30e-3)`.
+    #[must_use]
+    pub fn with(mut self, change: impl FnOnce(&mut Self)) -> Self {
+        change(&mut self);
+        self
+    }
+
+    /// Number of teeth.
+    #[must_use]
+    pub fn teeth(&self) -> u32 {
+        self.teeth
+    }
+
+    /// Module (m): reference diameter per tooth.
+    #[must_use]
+    pub fn module(&self) -> f64 {
+        self.module
+    }
+
     /// Reference radius (m).
     #[must_use]
     pub fn reference_radius(&self) -> f64 {

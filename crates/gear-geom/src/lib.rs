@@ -16,23 +16,23 @@
 //! along the line of action from the base tangent point.
 //!
 //! ```
-//! use gear_geom::{FilletSpec, Gear, GearKind, GearPair, GearSpec, ToothThickness};
-//! let spec = |teeth: u32| GearSpec {
-//!     kind: GearKind::External,
-//!     teeth,
-//!     module: 6e-3,
-//!     pressure_angle: 20_f64.to_radians(),
-//!     thickness: ToothThickness::ProfileShift(0.0),
-//!     tip_radius: 81e-3,
-//!     root_radius: 67.5e-3,
-//!     rim_radius: 30e-3,
-//!     facewidth: 16e-3,
-//!     fillet: FilletSpec::Rack { tip_radius: 0.38 * 6e-3 },
-//!     tip_round: 0.1e-3,
-//!     ..GearSpec::default()
-//! };
-//! let pair = GearPair::new(Gear::new(&spec(25))?, Gear::new(&spec(25))?, 150e-3)?;
-//! assert!((pair.contact_ratio() - 1.61).abs() < 0.02);
+//! use gear_geom::{Gear, GearPair, GearSpec, ToothThickness};
+//!
+//! // 27 teeth with a profile shift of 0.2 and 35 teeth, module 3 mm, at their standard centre distance and 0.1 mm more
+//! let pinion = GearSpec::standard(27, 3e-3).with(|gear| gear.thickness = ToothThickness::ProfileShift(0.05));
+//! let pair = GearPair::new(Gear::new(&pinion)?, Gear::new(&GearSpec::standard(35, 3e-3))?, 93.2e-3)?;
+//! assert!((pair.contact_ratio() - 1.65).abs() < 0.05, "{}", pair.contact_ratio());
+//! # Ok::<(), gear_geom::GeometryErrors>(())
+//! ```
+//!
+//! A spur pair by the standard, its contact ratio:
+//!
+//! ```
+//! use gear_geom::{Gear, GearPair, GearSpec};
+//!
+//! let gear = Gear::new(&GearSpec::standard(25, 6e-3))?;
+//! let pair = GearPair::new(gear.clone(), gear, 150e-3)?;
+//! assert!((pair.contact_ratio() - 1.61).abs() < 0.006);
 //! # Ok::<(), gear_geom::GeometryErrors>(())
 //! ```
 

@@ -23,16 +23,14 @@ fn least(f: impl Fn(f64) -> f64, low: f64, high: f64) -> f64 {
 fn analytic_rack_trochoid_is_the_envelope_of_the_rack_corner() {
     for (teeth, corner, root) in [(27_u32, 0.8e-3, 36.9e-3), (60, 1.1e-3, 86.2e-3), (12, 0.9e-3, 14.25e-3)] {
         let module = 3e-3;
-        let spec = GearSpec {
-            teeth,
-            module,
-            tip_radius: 0.5 * module * f64::from(teeth) + module,
-            root_radius: root,
-            rim_radius: 0.5 * root,
-            fillet: FilletSpec::Rack { tip_radius: corner },
-            tip_round: 0.0,
-            ..GearSpec::default()
-        };
+        let spec = GearSpec::standard(teeth, module).with(|spec| {
+            spec.tip_radius = 0.5 * module * f64::from(teeth) + module;
+            spec.root_radius = root;
+            spec.rim_radius = 0.5 * root;
+            spec.fillet = FilletSpec::Rack { tip_radius: corner };
+            spec.tip_round = 0.0;
+            spec.facewidth = 16e-3;
+        });
         let gear = Gear::new(&spec).unwrap();
         let (r, alpha) = (spec.reference_radius(), spec.pressure_angle);
         let depth = r - root - corner;
@@ -56,18 +54,16 @@ fn analytic_rack_trochoid_is_the_envelope_of_the_rack_corner() {
 #[test]
 fn analytic_shaper_trochoid_is_the_envelope_of_the_cutter_corner() {
     let (cutter_teeth, addendum, corner) = (25_u32, 1.25, 0.6e-3);
-    let spec = GearSpec {
-        kind: GearKind::Internal,
-        teeth: 99,
-        module: 3e-3,
-        thickness: ToothThickness::AtReference(4.6e-3),
-        tip_radius: 146.2e-3,
-        root_radius: 152.25e-3,
-        rim_radius: 165e-3,
-        fillet: FilletSpec::Shaper { teeth: cutter_teeth, addendum, tip_radius: corner },
-        tip_round: 0.0,
-        ..GearSpec::default()
-    };
+    let spec = GearSpec::standard(99, 3e-3).with(|spec| {
+        spec.kind = GearKind::Internal;
+        spec.thickness = ToothThickness::AtReference(4.6e-3);
+        spec.tip_radius = 146.2e-3;
+        spec.root_radius = 152.25e-3;
+        spec.rim_radius = 165e-3;
+        spec.fillet = FilletSpec::Shaper { teeth: cutter_teeth, addendum, tip_radius: corner };
+        spec.tip_round = 0.0;
+        spec.facewidth = 16e-3;
+    });
     let ring = Gear::new(&spec).unwrap();
     // independently: the cutter whose tooth fills the ring's space where both roll
     let ratio = f64::from(cutter_teeth) / 99.0;

@@ -7,19 +7,16 @@ use nalgebra::Rotation2;
 use proptest::prelude::*;
 
 fn nonunity(teeth: u32, thickness: f64, tip: f64, root: f64, corner: f64) -> GearSpec {
-    GearSpec {
-        teeth,
-        module: 2.0 * 88.9e-3 / 62.0,
-        pressure_angle: 24.6_f64.to_radians(),
-        thickness: ToothThickness::AtReference(thickness * 1e-3),
-        tip_radius: 0.5e-3 * tip,
-        root_radius: 0.5e-3 * root,
-        rim_radius: 25.4e-3,
-        facewidth: 31.75e-3,
-        fillet: FilletSpec::Rack { tip_radius: corner * 1e-3 },
-        tip_round: 0.05e-3,
-        ..GearSpec::default()
-    }
+    GearSpec::standard(teeth, 2.0 * 88.9e-3 / 62.0).with(|spec| {
+        spec.pressure_angle = 24.6_f64.to_radians();
+        spec.thickness = ToothThickness::AtReference(thickness * 1e-3);
+        spec.tip_radius = 0.5e-3 * tip;
+        spec.root_radius = 0.5e-3 * root;
+        spec.rim_radius = 25.4e-3;
+        spec.facewidth = 31.75e-3;
+        spec.fillet = FilletSpec::Rack { tip_radius: corner * 1e-3 };
+        spec.tip_round = 0.05e-3;
+    })
 }
 
 fn nonunity_pair() -> GearPair {
@@ -29,28 +26,24 @@ fn nonunity_pair() -> GearPair {
 }
 
 fn ring_pair() -> GearPair {
-    let pinion = Gear::new(&GearSpec {
-        teeth: 35,
-        module: 3e-3,
-        tip_radius: 55.5e-3,
-        root_radius: 48.75e-3,
-        fillet: FilletSpec::Rack { tip_radius: 0.8e-3 },
-        tip_round: 0.06e-3,
-        ..GearSpec::default()
-    })
+    let pinion = Gear::new(&GearSpec::standard(35, 3e-3).with(|spec| {
+        spec.tip_radius = 55.5e-3;
+        spec.root_radius = 48.75e-3;
+        spec.fillet = FilletSpec::Rack { tip_radius: 0.8e-3 };
+        spec.tip_round = 0.06e-3;
+        spec.facewidth = 16e-3;
+    }))
     .unwrap();
-    let ring = Gear::new(&GearSpec {
-        kind: GearKind::Internal,
-        teeth: 99,
-        module: 3e-3,
-        thickness: ToothThickness::AtReference(4.6e-3),
-        tip_radius: 146.2e-3,
-        root_radius: 152.25e-3,
-        rim_radius: 165e-3,
-        fillet: FilletSpec::Shaper { teeth: 25, addendum: 1.25, tip_radius: 0.6e-3 },
-        tip_round: 0.06e-3,
-        ..GearSpec::default()
-    })
+    let ring = Gear::new(&GearSpec::standard(99, 3e-3).with(|spec| {
+        spec.kind = GearKind::Internal;
+        spec.thickness = ToothThickness::AtReference(4.6e-3);
+        spec.tip_radius = 146.2e-3;
+        spec.root_radius = 152.25e-3;
+        spec.rim_radius = 165e-3;
+        spec.fillet = FilletSpec::Shaper { teeth: 25, addendum: 1.25, tip_radius: 0.6e-3 };
+        spec.tip_round = 0.06e-3;
+        spec.facewidth = 16e-3;
+    }))
     .unwrap();
     GearPair::new(pinion, ring, 96e-3).unwrap()
 }
@@ -78,7 +71,7 @@ fn peer_dissertation_table_3_1() {
 /// Dissertation section 2.2: the unity pair's theoretical contact ratio of 1.61, on its 150 mm centre distance without backlash.
 #[test]
 fn peer_dissertation_unity_contact_ratio() {
-    let gear = Gear::new(&GearSpec::default()).unwrap();
+    let gear = Gear::new(&GearSpec::standard(25, 6e-3)).unwrap();
     let pair = GearPair::new(gear.clone(), gear, 150e-3).unwrap();
     assert!((pair.contact_ratio() - 1.61).abs() < 0.006, "{}", pair.contact_ratio());
     assert!(pair.findings().contains(&gear_geom::Finding::ZeroBacklash));
@@ -127,16 +120,17 @@ fn invariant_tooth_numbers_follow_the_rotation() {
 #[test]
 fn invariant_outline_has_no_gap_in_place_or_slope() {
     use gear_geom::OutlineSegment;
-    let circular = GearSpec {
-        fillet: FilletSpec::Circular { radius: 1.9e-3 },
-        teeth: 40,
-        tip_radius: 126e-3,
-        root_radius: 112.8e-3,
-        ..GearSpec::default()
-    };
+    let circular = GearSpec::standard(40, 6e-3).with(|spec| {
+        spec.fillet = FilletSpec::Circular { radius: 1.9e-3 };
+        spec.tip_radius = 126e-3;
+        spec.root_radius = 112.8e-3;
+        spec.facewidth = 16e-3;
+    });
     let ring = ring_pair().wheel().clone();
-    let ring_circular =
-        Gear::new(&GearSpec { fillet: FilletSpec::Circular { radius: 0.5e-3 }, ..ring.spec().clone() }).unwrap();
+    let ring_circular = Gear::new(&ring.spec().clone().with(|spec| {
+        spec.fillet = FilletSpec::Circular { radius: 0.5e-3 };
+    }))
+    .unwrap();
     let pair = nonunity_pair();
     for gear in [pair.pinion().clone(), pair.wheel().clone(), Gear::new(&circular).unwrap(), ring, ring_circular] {
         let outline = gear.half_tooth_outline();
@@ -175,28 +169,41 @@ fn only(errors: &GeometryErrors) -> &GeometryError {
 
 #[test]
 fn extreme_each_fault_is_found_and_explained() {
-    let base = GearSpec::default();
+    let base = GearSpec::standard(25, 6e-3);
     let gear = |spec: GearSpec| Gear::new(&spec);
-    let error = gear(GearSpec { tip_radius: 66e-3, ..base.clone() }).unwrap_err();
+    let error = gear(base.clone().with(|spec| {
+        spec.tip_radius = 66e-3;
+    }))
+    .unwrap_err();
     assert!(matches!(only(&error), GeometryError::Order { larger: "tip_radius", .. }), "{error}");
-    let error = gear(GearSpec { tip_radius: 95e-3, ..base.clone() }).unwrap_err();
+    let error = gear(base.clone().with(|spec| {
+        spec.tip_radius = 95e-3;
+    }))
+    .unwrap_err();
     assert!(matches!(only(&error), GeometryError::PointedTeeth { .. }), "{error}");
-    let error = gear(GearSpec { fillet: FilletSpec::Rack { tip_radius: 5e-3 }, ..base.clone() }).unwrap_err();
+    let error = gear(base.clone().with(|spec| {
+        spec.fillet = FilletSpec::Rack { tip_radius: 5e-3 };
+    }))
+    .unwrap_err();
     assert!(matches!(only(&error), GeometryError::FilletDoesNotFit { .. }), "{error}");
-    let error = gear(GearSpec { module: f64::NAN, facewidth: -1.0, ..base.clone() }).unwrap_err();
+    let error = gear(GearSpec::standard(25, f64::NAN).with(|spec| {
+        spec.facewidth = -1.0;
+    }))
+    .unwrap_err();
     assert!(error.0.len() >= 2, "several faults are told at once: {error}");
-    let error = gear(GearSpec { kind: GearKind::Internal, ..base.clone() }).unwrap_err();
+    let error = gear(base.clone().with(|spec| {
+        spec.kind = GearKind::Internal;
+    }))
+    .unwrap_err();
     assert!(error.0.iter().any(|e| matches!(e, GeometryError::Order { .. })), "{error}");
 
     let good = gear(base.clone()).unwrap();
     let pair = |a: Gear, b: Gear, distance: f64| GearPair::new(a, b, distance).unwrap_err();
-    let other = gear(GearSpec {
-        module: 5e-3,
-        tip_radius: 67.5e-3,
-        root_radius: 56.25e-3,
-        fillet: FilletSpec::Rack { tip_radius: 1.9e-3 },
-        ..base.clone()
-    })
+    let other = gear(GearSpec::standard(25, 5e-3).with(|spec| {
+        spec.tip_radius = 67.5e-3;
+        spec.root_radius = 56.25e-3;
+        spec.fillet = FilletSpec::Rack { tip_radius: 1.9e-3 };
+    }))
     .unwrap();
     assert!(matches!(only(&pair(good.clone(), other, 140e-3)), GeometryError::BasePitch { .. }));
     assert!(matches!(only(&pair(good.clone(), good.clone(), 130e-3)), GeometryError::CentreDistance { .. }));
@@ -204,27 +211,37 @@ fn extreme_each_fault_is_found_and_explained() {
     assert!(jam.0.iter().any(|e| matches!(e, GeometryError::NegativeBacklash { .. })), "{jam}");
     let apart = pair(good.clone(), good.clone(), 158e-3);
     assert!(apart.0.iter().any(|e| matches!(e, GeometryError::ContactRatio { .. })), "{apart}");
-    let few = gear(GearSpec { teeth: 12, tip_radius: 42e-3, root_radius: 28.5e-3, rim_radius: 10e-3, ..base.clone() })
-        .unwrap();
+    let few = gear(GearSpec::standard(12, 6e-3).with(|spec| {
+        spec.tip_radius = 42e-3;
+        spec.root_radius = 28.5e-3;
+        spec.rim_radius = 10e-3;
+    }))
+    .unwrap();
     assert!(few.is_undercut());
-    let rack_like = gear(GearSpec { teeth: 120, tip_radius: 366e-3, root_radius: 352.5e-3, ..base.clone() }).unwrap();
+    let rack_like = gear(GearSpec::standard(120, 6e-3).with(|spec| {
+        spec.tip_radius = 366e-3;
+        spec.root_radius = 352.5e-3;
+    }))
+    .unwrap();
     let interference = pair(few, rack_like, 396e-3);
     assert!(
         interference.0.iter().any(|e| matches!(e, GeometryError::Interference { member: "pinion", .. })),
         "{interference}"
     );
     let fouling = GearPair::new(
-        gear(GearSpec { teeth: 90, tip_radius: 276e-3, root_radius: 262.5e-3, ..base.clone() }).unwrap(),
-        gear(GearSpec {
-            kind: GearKind::Internal,
-            teeth: 96,
-            tip_radius: 282.6e-3,
-            root_radius: 296e-3,
-            rim_radius: 330e-3,
-            thickness: ToothThickness::AtReference(9.2e-3),
-            fillet: FilletSpec::Circular { radius: 1.2e-3 },
-            ..base.clone()
-        })
+        gear(GearSpec::standard(90, 6e-3).with(|spec| {
+            spec.tip_radius = 276e-3;
+            spec.root_radius = 262.5e-3;
+        }))
+        .unwrap(),
+        gear(GearSpec::standard(96, 6e-3).with(|spec| {
+            spec.kind = GearKind::Internal;
+            spec.tip_radius = 282.6e-3;
+            spec.root_radius = 296e-3;
+            spec.rim_radius = 330e-3;
+            spec.thickness = ToothThickness::AtReference(9.2e-3);
+            spec.fillet = FilletSpec::Circular { radius: 1.2e-3 };
+        }))
         .unwrap(),
         18e-3,
     )
@@ -244,13 +261,7 @@ proptest! {
         let sigma = kind.sigma();
         let reference = 0.5 * module * f64::from(teeth);
         let root = reference - sigma * (dedendum - shift) * module;
-        let spec = GearSpec {
-            kind, teeth, module, pressure_angle: angle.to_radians(), thickness: ToothThickness::ProfileShift(shift),
-            tip_radius: reference + sigma * (addendum + shift) * module, root_radius: root,
-            rim_radius: (root - sigma * rim * module).max(0.05 * root),
-            fillet: if internal { FilletSpec::Circular { radius: corner * module } } else { FilletSpec::Rack { tip_radius: corner * module } },
-            tip_round: round * module, facewidth: 10.0 * module, ..GearSpec::default()
-        };
+        let spec = GearSpec::standard(teeth, module).with(|spec| { spec.kind = kind; spec.pressure_angle = angle.to_radians(); spec.thickness = ToothThickness::ProfileShift(shift); spec.tip_radius = reference + sigma * (addendum + shift) * module; spec.root_radius = root; spec.rim_radius = (root - sigma * rim * module).max(0.05 * root); spec.fillet = if internal { FilletSpec::Circular { radius: corner * module } } else { FilletSpec::Rack { tip_radius: corner * module } }; spec.tip_round = round * module; spec.facewidth = 10.0 * module; });
         match Gear::new(&spec) {
             Err(errors) => prop_assert!(!errors.0.is_empty() && !errors.to_string().contains("NaN")),
             Ok(gear) => {

@@ -45,12 +45,7 @@ pub fn compute(case: &SpurPairCase, observer: &dyn RunObserver) -> anyhow::Resul
         None
     } else {
         observer.stage("force-deflection map");
-        let request = StaticsRequest {
-            mesh_cycles: case.mesh_cycles.clone(),
-            torques: case.map_torques.clone(),
-            stiffness_difference: false,
-            keep_pressure: false,
-        };
+        let request = StaticsRequest::new(case.mesh_cycles.clone(), case.map_torques.clone());
         let map = model.solve(&request, &AsObserver(observer)).context("the force-deflection map cannot be solved")?;
         times.map = map.time.as_secs_f64();
         Some(map)

@@ -75,20 +75,17 @@ fn train() -> Result<PlanetaryTrain> {
     let centre_distance = 88.9e-3;
     let module = 2.0 * centre_distance / 62.0;
     let gear = |kind, teeth, thickness: f64, [tip, root, rim]: [f64; 3], facewidth: f64, fillet| {
-        Gear::new(&GearSpec {
-            kind,
-            teeth,
-            module,
-            pressure_angle: 24.6_f64.to_radians(),
-            thickness: ToothThickness::AtReference(1e-3 * thickness),
-            tip_radius: 0.5e-3 * tip,
-            root_radius: 0.5e-3 * root,
-            rim_radius: 0.5e-3 * rim,
-            facewidth: 1e-3 * facewidth,
-            fillet,
-            tip_round: 0.02 * module,
-            ..GearSpec::default()
-        })
+        Gear::new(&GearSpec::standard(teeth, module).with(|spec| {
+            spec.kind = kind;
+            spec.pressure_angle = 24.6_f64.to_radians();
+            spec.thickness = ToothThickness::AtReference(1e-3 * thickness);
+            spec.tip_radius = 0.5e-3 * tip;
+            spec.root_radius = 0.5e-3 * root;
+            spec.rim_radius = 0.5e-3 * rim;
+            spec.facewidth = 1e-3 * facewidth;
+            spec.fillet = fillet;
+            spec.tip_round = 0.02 * module;
+        }))
     };
     let rack = |tip_radius: f64| FilletSpec::Rack { tip_radius };
     Ok(PlanetaryTrain::new(&PlanetaryTrainSpec {

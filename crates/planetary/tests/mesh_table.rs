@@ -37,12 +37,7 @@ fn plane(site: MeshSite) -> &'static (PairModel, MeshTable) {
 /// Approach and force of a fresh solution.
 fn fresh(model: &PairModel, mesh_cycle: f64, force: f64) -> (f64, f64) {
     let torque = force * model.pairing().base_radius(1);
-    let request = StaticsRequest {
-        mesh_cycles: vec![mesh_cycle],
-        torques: vec![torque],
-        stiffness_difference: true,
-        keep_pressure: false,
-    };
+    let request = StaticsRequest::new([mesh_cycle], [torque]).with_stiffness_difference();
     let series = model.solve(&request, &()).unwrap();
     let result = &series.results[0][0];
     assert!(result.status.is_usable(), "{:?}", result.status);

@@ -100,8 +100,7 @@ fn gearwright_answer(case: &SpurPairCase, fraction: f64, mesh_cycle: f64) -> any
     let options = fecm::statics::PairModelOptions { face: FaceModel::PlaneStrain, damage, ..case.options.clone() };
     let model = PairModel::new(&case.pair, &options)?;
     let torques = vec![case.inputs.load.torque_n_m];
-    let request =
-        StaticsRequest { mesh_cycles: vec![mesh_cycle], torques, stiffness_difference: false, keep_pressure: false };
+    let request = StaticsRequest::new([mesh_cycle], torques);
     let position = model.solve(&request, &())?.results.remove(0).remove(0);
     let stats = model.stats();
     let unknowns = stats.pinion.sector_unknowns + stats.wheel.sector_unknowns;

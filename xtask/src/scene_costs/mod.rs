@@ -115,12 +115,7 @@ pub fn run() -> anyhow::Result<()> {
 }
 
 fn statics(case: &SpurPairCase, pair: &GearPair, options: &PairModelOptions) -> anyhow::Result<Measured> {
-    let request = StaticsRequest {
-        mesh_cycles: (0..POSITIONS).map(|k| f64::from(k) / f64::from(POSITIONS)).collect(),
-        torques: vec![case.inputs.load.torque_n_m],
-        stiffness_difference: false,
-        keep_pressure: false,
-    };
+    let request = StaticsRequest::one_cycle(POSITIONS, case.inputs.load.torque_n_m);
     measured(|| {
         let series = PairModel::new(pair, options)?.solve(&request, &())?;
         Ok(series.results[0].iter().map(|r| 1e6 * r.static_transmission_error).reduce(f64::max))

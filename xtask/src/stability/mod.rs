@@ -223,7 +223,7 @@ mod tests {
     }
 
     fn geometry_error() -> anyhow::Error {
-        gear_geom::Gear::new(&gear_geom::GearSpec { teeth: 0, ..Default::default() }).expect_err("no teeth").into()
+        gear_geom::Gear::new(&gear_geom::GearSpec::standard(0, 6e-3)).expect_err("no teeth").into()
     }
 
     #[test]

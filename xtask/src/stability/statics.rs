@@ -117,12 +117,7 @@ pub fn model(pair: &GearPair, face: FaceModel) -> anyhow::Result<PairModel> {
 
 /// Five positions.
 pub fn solve(model: &PairModel, torque: f64) -> anyhow::Result<Vec<PositionResult>> {
-    let request = StaticsRequest {
-        mesh_cycles: vec![0.0, 0.2, 0.4, 0.6, 0.8],
-        torques: vec![torque],
-        stiffness_difference: false,
-        keep_pressure: true,
-    };
+    let request = StaticsRequest::new([0.0, 0.2, 0.4, 0.6, 0.8], [torque]).keeping_pressure();
     Ok(model.solve(&request, &())?.results.into_iter().flatten().collect())
 }
 

@@ -138,12 +138,11 @@ fn solve(scene: &Scene, options: &PairModelOptions) -> anyhow::Result<(Curves, f
             Damage::Pit(Pit::ellipse(0.0, scene.pair.pitch_roll(), 16.51e-3, 3.35e-3, measure))
         }
     };
-    let request = StaticsRequest {
-        mesh_cycles: (0..POSITIONS).map(|k| 2.0 * f64::from(k) / f64::from(POSITIONS) - 1.0).collect(),
-        torques: vec![scene.torque],
-        stiffness_difference: false,
-        keep_pressure: true,
-    };
+    let request = StaticsRequest::new(
+        (0..POSITIONS).map(|k| 2.0 * f64::from(k) / f64::from(POSITIONS) - 1.0).collect::<Vec<_>>(),
+        [scene.torque],
+    )
+    .keeping_pressure();
     let before = healthy.solve(&request, &())?.results.remove(0);
     let started = Instant::now();
     let damaged = healthy.with_damage(&[vec![ToothDamage { tooth: 0, damage }], vec![]])?;

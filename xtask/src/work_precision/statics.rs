@@ -141,9 +141,8 @@ fn choices(scene: &Scene) -> Vec<(String, String, PairModelOptions)> {
 fn solve(scene: &Scene, options: &PairModelOptions) -> anyhow::Result<(Curves, f64)> {
     let started = Instant::now();
     let model = PairModel::new(&scene.pair, options)?;
-    let mesh_cycles = (0..POSITIONS).map(|k| f64::from(k) / f64::from(POSITIONS)).collect();
-    let request =
-        StaticsRequest { mesh_cycles, torques: vec![scene.torque], stiffness_difference: true, keep_pressure: false };
+    let mesh_cycles: Vec<f64> = (0..POSITIONS).map(|k| f64::from(k) / f64::from(POSITIONS)).collect();
+    let request = StaticsRequest::new(mesh_cycles, [scene.torque]).with_stiffness_difference();
     let results = model.solve(&request, &())?.results.remove(0);
     let time = started.elapsed().as_secs_f64();
     let error = results.iter().map(|r| r.static_transmission_error).collect();

@@ -48,12 +48,7 @@ impl PairDynamics<'_> {
     /// # Errors
     /// No position with a static equilibrium; gears of which neither can turn.
     pub fn mesh_vibration(&self, mesh_cycles: &[f64], torque: f64) -> Result<MeshVibration, FecmError> {
-        let request = StaticsRequest {
-            mesh_cycles: mesh_cycles.to_vec(),
-            torques: vec![torque],
-            stiffness_difference: false,
-            keep_pressure: false,
-        };
+        let request = StaticsRequest::new(mesh_cycles.to_vec(), [torque]);
         let solved = self.model.solve(&request, &())?;
         let found: Vec<f64> = solved.results.iter().flatten().filter_map(|r| r.stiffness_local_slope).collect();
         if found.is_empty() {

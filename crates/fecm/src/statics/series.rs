@@ -38,6 +38,43 @@ pub struct StaticsRequest {
     pub keep_pressure: bool,
 }
 
+impl StaticsRequest {
+    /// All of `mesh_cycles` at all of `torques` on the wheel (N m); neither differences nor pressures are kept.
+    ///
+    /// ```
+    /// let request = fecm::StaticsRequest::new([0.0, 0.25, 0.5], [200.0]).keeping_pressure();
+    /// assert!(request.keep_pressure && !request.stiffness_difference);
+    /// ```
+    #[must_use]
+    pub fn new(mesh_cycles: impl Into<Vec<f64>>, torques: impl Into<Vec<f64>>) -> Self {
+        Self {
+            mesh_cycles: mesh_cycles.into(),
+            torques: torques.into(),
+            stiffness_difference: false,
+            keep_pressure: false,
+        }
+    }
+
+    /// One mesh cycle from 0 at equally spaced positions, at one torque on the wheel (N m).
+    #[must_use]
+    pub fn one_cycle(positions: u32, torque: f64) -> Self {
+        let cycles: Vec<f64> = (0..positions).map(|k| f64::from(k) / f64::from(positions)).collect();
+        Self::new(cycles, [torque])
+    }
+
+    /// The same with the local slope of the force also by differences.
+    #[must_use]
+    pub fn with_stiffness_difference(self) -> Self {
+        Self { stiffness_difference: true, ..self }
+    }
+
+    /// The same with the pressure of every cell kept.
+    #[must_use]
+    pub fn keeping_pressure(self) -> Self {
+        Self { keep_pressure: true, ..self }
+    }
+}
+
 /// All positions at all torques.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StaticsSeries {

@@ -11,14 +11,13 @@ pub const TORQUE: f64 = 200.0;
 pub fn gear(teeth: u32) -> Gear {
     let module = 6e-3;
     let radius = 0.5 * module * f64::from(teeth);
-    Gear::new(&GearSpec {
-        teeth,
-        thickness: ToothThickness::AtReference(0.5 * std::f64::consts::PI * module - 0.05e-3),
-        tip_radius: radius + module,
-        root_radius: radius - 1.25 * module,
-        rim_radius: 0.4 * radius,
-        ..GearSpec::default()
-    })
+    Gear::new(&GearSpec::standard(teeth, 6e-3).with(|spec| {
+        spec.thickness = ToothThickness::AtReference(0.5 * std::f64::consts::PI * module - 0.05e-3);
+        spec.tip_radius = radius + module;
+        spec.root_radius = radius - 1.25 * module;
+        spec.rim_radius = 0.4 * radius;
+        spec.facewidth = 16e-3;
+    }))
     .unwrap()
 }
 

@@ -40,19 +40,16 @@ impl Proportions {
 
     fn spec(&self, teeth: u32) -> GearSpec {
         let radius = self.reference_radius(teeth);
-        GearSpec {
-            teeth,
-            module: self.module,
-            pressure_angle: self.pressure_angle.to_radians(),
-            thickness: ToothThickness::AtReference((0.5 * std::f64::consts::PI - 0.01) * self.module),
-            tip_radius: radius + self.addendum * self.module,
-            root_radius: radius - (self.addendum + 0.25) * self.module,
-            rim_radius: self.bore * radius,
-            facewidth: self.facewidth,
-            fillet: FilletSpec::Rack { tip_radius: 0.2 * self.module },
-            tip_round: 0.02 * self.module,
-            ..GearSpec::default()
-        }
+        GearSpec::standard(teeth, self.module).with(|spec| {
+            spec.pressure_angle = self.pressure_angle.to_radians();
+            spec.thickness = ToothThickness::AtReference((0.5 * std::f64::consts::PI - 0.01) * self.module);
+            spec.tip_radius = radius + self.addendum * self.module;
+            spec.root_radius = radius - (self.addendum + 0.25) * self.module;
+            spec.rim_radius = self.bore * radius;
+            spec.facewidth = self.facewidth;
+            spec.fillet = FilletSpec::Rack { tip_radius: 0.2 * self.module };
+            spec.tip_round = 0.02 * self.module;
+        })
     }
 
     /// Both external.
@@ -66,14 +63,13 @@ impl Proportions {
     pub fn internal_pair(&self) -> Result<GearPair, GeometryErrors> {
         let [pinion, ring] = self.teeth;
         let radius = self.reference_radius(ring);
-        let spec = GearSpec {
-            kind: GearKind::Internal,
-            tip_radius: radius - 0.75 * self.module,
-            root_radius: radius + 1.25 * self.module,
-            rim_radius: radius + 5.0 * self.module,
-            fillet: FilletSpec::Circular { radius: 0.2 * self.module },
-            ..self.spec(ring)
-        };
+        let spec = self.spec(ring).with(|spec| {
+            spec.kind = GearKind::Internal;
+            spec.tip_radius = radius - 0.75 * self.module;
+            spec.root_radius = radius + 1.25 * self.module;
+            spec.rim_radius = radius + 5.0 * self.module;
+            spec.fillet = FilletSpec::Circular { radius: 0.2 * self.module };
+        });
         let centre = radius - self.reference_radius(pinion);
         GearPair::new(Gear::new(&self.spec(pinion))?, Gear::new(&spec)?, centre)
     }

@@ -8,39 +8,32 @@ use gear_geom::{FilletSpec, Gear, GearKind, GearSpec, PlanetaryTrainSpec, ToothT
 /// root circle (clearance of a quarter module), fillets.
 pub fn dissertation_spec() -> PlanetaryTrainSpec {
     let module = 2.0 * 88.9e-3 / 62.0;
-    let common =
-        GearSpec { module, pressure_angle: 24.6_f64.to_radians(), tip_round: 0.02 * module, ..GearSpec::default() };
-    let sun = GearSpec {
-        teeth: 27,
-        thickness: ToothThickness::AtReference(4.52e-3),
-        tip_radius: 84.05e-3 / 2.0,
-        root_radius: 70.76e-3 / 2.0,
-        rim_radius: 62.23e-3 / 2.0,
-        facewidth: 34.93e-3,
-        fillet: FilletSpec::Rack { tip_radius: 0.86e-3 },
-        ..common.clone()
-    };
-    let planet = GearSpec {
-        teeth: 35,
-        thickness: ToothThickness::AtReference(4.18e-3),
-        tip_radius: 104.98e-3 / 2.0,
-        root_radius: 91.54e-3 / 2.0,
-        rim_radius: 77.9e-3 / 2.0,
-        facewidth: 31.75e-3,
-        fillet: FilletSpec::Rack { tip_radius: 0.55e-3 },
-        ..common.clone()
-    };
-    let ring = GearSpec {
-        kind: GearKind::Internal,
-        teeth: 99,
-        thickness: ToothThickness::AtReference(6.92e-3),
-        tip_radius: 271.75e-3 / 2.0,
-        root_radius: 88.9e-3 + 104.98e-3 / 2.0 + 0.25 * module,
-        rim_radius: 296.55e-3 / 2.0,
-        facewidth: 25.4e-3,
-        fillet: FilletSpec::Circular { radius: 0.5e-3 },
-        ..common
-    };
+    let gear = |teeth: u32| GearSpec::standard(teeth, module).with(|spec| spec.pressure_angle = 24.6_f64.to_radians());
+    let sun = gear(27).with(|spec| {
+        spec.thickness = ToothThickness::AtReference(4.52e-3);
+        spec.tip_radius = 84.05e-3 / 2.0;
+        spec.root_radius = 70.76e-3 / 2.0;
+        spec.rim_radius = 62.23e-3 / 2.0;
+        spec.facewidth = 34.93e-3;
+        spec.fillet = FilletSpec::Rack { tip_radius: 0.86e-3 };
+    });
+    let planet = gear(35).with(|spec| {
+        spec.thickness = ToothThickness::AtReference(4.18e-3);
+        spec.tip_radius = 104.98e-3 / 2.0;
+        spec.root_radius = 91.54e-3 / 2.0;
+        spec.rim_radius = 77.9e-3 / 2.0;
+        spec.facewidth = 31.75e-3;
+        spec.fillet = FilletSpec::Rack { tip_radius: 0.55e-3 };
+    });
+    let ring = gear(99).with(|spec| {
+        spec.kind = GearKind::Internal;
+        spec.thickness = ToothThickness::AtReference(6.92e-3);
+        spec.tip_radius = 271.75e-3 / 2.0;
+        spec.root_radius = 88.9e-3 + 104.98e-3 / 2.0 + 0.25 * module;
+        spec.rim_radius = 296.55e-3 / 2.0;
+        spec.facewidth = 25.4e-3;
+        spec.fillet = FilletSpec::Circular { radius: 0.5e-3 };
+    });
     PlanetaryTrainSpec {
         sun: Gear::new(&sun).unwrap(),
         planet: Gear::new(&planet).unwrap(),

@@ -42,7 +42,7 @@ mod tests {
     /// circle (teeth and spaces alike in size).
     #[test]
     fn analytic_disc_between_root_and_tip() {
-        let spec = GearSpec::default();
+        let spec = GearSpec::standard(25, 6e-3);
         let gear = Gear::new(&spec).unwrap();
         let disc = |radius: f64, power: i32| {
             let ring = std::f64::consts::PI * (radius.powi(power) - gear.rim_radius().powi(power));

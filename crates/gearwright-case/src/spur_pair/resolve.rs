@@ -132,24 +132,20 @@ pub(crate) fn spec(
         },
         _ => FilletSpec::Rack { tip_radius: radius },
     };
-    let mut spec = GearSpec {
-        kind,
-        teeth: gear.teeth,
-        module: mesh.module_mm * MM,
-        pressure_angle: mesh.pressure_angle_deg.to_radians(),
-        thickness: match (gear.tooth_thickness_mm, gear.profile_shift) {
-            (Some(thickness), _) => ToothThickness::AtReference(thickness * MM),
-            (None, shift) => ToothThickness::ProfileShift(shift.unwrap_or_default()),
-        },
-        tip_radius: 0.5 * gear.tip_diameter_mm * MM,
-        root_radius: 0.5 * gear.root_diameter_mm * MM,
-        rim_radius: 0.5 * gear.bore_diameter_mm * MM,
-        facewidth: gear.facewidth_mm * MM,
-        fillet,
-        tip_round: gear.tip_round_mm.unwrap_or_default() * MM,
-        modification: FlankModification::default(),
-        pitch_errors: gear.modification.pitch_errors_um.iter().map(|e| e * UM).collect(),
+    let mut spec = GearSpec::standard(gear.teeth, mesh.module_mm * MM);
+    spec.kind = kind;
+    spec.pressure_angle = mesh.pressure_angle_deg.to_radians();
+    spec.thickness = match (gear.tooth_thickness_mm, gear.profile_shift) {
+        (Some(thickness), _) => ToothThickness::AtReference(thickness * MM),
+        (None, shift) => ToothThickness::ProfileShift(shift.unwrap_or_default()),
     };
+    spec.tip_radius = 0.5 * gear.tip_diameter_mm * MM;
+    spec.root_radius = 0.5 * gear.root_diameter_mm * MM;
+    spec.rim_radius = 0.5 * gear.bore_diameter_mm * MM;
+    spec.facewidth = gear.facewidth_mm * MM;
+    spec.fillet = fillet;
+    spec.tip_round = gear.tip_round_mm.unwrap_or_default() * MM;
+    spec.pitch_errors = gear.modification.pitch_errors_um.iter().map(|e| e * UM).collect();
     // relief ends where the plain involute does
     let plain = gear_geom::Gear::new(&spec).ok();
     let ends = plain.map(|gear| [gear.form_radius(), gear.tip_radius()].map(|r| gear.roll_distance(r)));

@@ -120,12 +120,8 @@ fn curves(points: Points, case: &LumpedPairCase, name: &str) -> anyhow::Result<C
 
 /// Points of a spur-pair case at its mesh cycles and torque.
 fn solve(model: &PairModel, statics: &SpurPairCase, observer: &dyn RunObserver) -> anyhow::Result<Points> {
-    let request = StaticsRequest {
-        mesh_cycles: statics.mesh_cycles.clone(),
-        torques: vec![statics.inputs.load.torque_n_m],
-        stiffness_difference: true,
-        keep_pressure: false,
-    };
+    let request =
+        StaticsRequest::new(statics.mesh_cycles.clone(), [statics.inputs.load.torque_n_m]).with_stiffness_difference();
     let solved = model.solve(&request, &AsObserver(observer)).context("the contact cannot be solved")?;
     let series = solved.results.first().ok_or_else(|| anyhow!("no positions were solved"))?;
     Points::from_statics(series, statics.inputs.analysis.mesh_cycle_origin).map_err(|message| anyhow!(message))

@@ -179,7 +179,7 @@ pub fn force_curves(
 }
 
 fn request(mesh_cycles: Vec<f64>, torques: Vec<f64>) -> StaticsRequest {
-    StaticsRequest { mesh_cycles, torques, stiffness_difference: false, keep_pressure: false }
+    StaticsRequest::new(mesh_cycles, torques)
 }
 
 /// Knot of a load, where it has a solution.

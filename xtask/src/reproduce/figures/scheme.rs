@@ -209,12 +209,7 @@ pub fn nonunity_model(context: &Context) -> anyhow::Result<Drawn> {
     let pitted = context.spur_pair("nonunity-modified-pitted.toml")?;
     let healthy = PairModel::new(&case.pair, &case.options)?;
     // one pair in contact, with the tooth of interest in it
-    let request = StaticsRequest {
-        mesh_cycles: vec![0.0],
-        torques: vec![case.inputs.load.torque_n_m],
-        stiffness_difference: false,
-        keep_pressure: true,
-    };
+    let request = StaticsRequest::new([0.0], [case.inputs.load.torque_n_m]).keeping_pressure();
     let damaged = |case: &SpurPairCase| -> anyhow::Result<PairModel> {
         let severity = case.severities.first().ok_or_else(|| anyhow::anyhow!("the case has no damage"))?;
         Ok(healthy.with_damage(&severity.damage)?)
