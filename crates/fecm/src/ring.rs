@@ -7,7 +7,7 @@
 use faer::{Mat, MatRef};
 
 use crate::error::FecmError;
-use crate::linalg::{DenseCholesky, add_product, symmetrise};
+use crate::linalg::{DenseCholesky, add_product, product, symmetrise};
 
 /// A run of sectors condensed onto its lower and upper cut: `2 n x 2 n` stiffness.
 #[derive(Debug, Clone)]
@@ -163,14 +163,14 @@ pub fn solve_ring(sectors: &[&Mat<f64>], loads: &[Mat<f64>]) -> Result<Vec<Mat<f
         factor.solve_in_place(across.as_mut());
         let mut moved = load.clone();
         factor.solve_in_place(moved.as_mut());
-        at_last -= &to_last * &across;
-        load_last -= &to_last * &moved;
+        add_product(at_last.as_mut(), -1.0, to_last.as_ref(), across.as_ref());
+        add_product(load_last.as_mut(), -1.0, to_last.as_ref(), moved.as_ref());
         if !is_before_last {
             own = part(k, 1, 1) + part(k + 1, 0, 0);
-            own -= coupling.transpose() * &along;
-            let after = -(&to_last * &along);
+            add_product(own.as_mut(), -1.0, coupling.transpose(), along.as_ref());
+            let after = -product(to_last.as_ref(), along.as_ref());
             load = loads[k + 1].clone();
-            load -= coupling.transpose() * &moved;
+            add_product(load.as_mut(), -1.0, coupling.transpose(), moved.as_ref());
             to_last = after;
         }
         next.push(along);
@@ -182,10 +182,9 @@ pub fn solve_ring(sectors: &[&Mat<f64>], loads: &[Mat<f64>]) -> Result<Vec<Mat<f
     cuts[last] = load_last;
     for k in (0..last).rev() {
         let mut cut = free[k].clone();
-        cut -= &end[k] * &cuts[last];
+        add_product(cut.as_mut(), -1.0, end[k].as_ref(), cuts[last].as_ref());
         if k + 1 < last {
-            let ahead = cuts[k + 1].clone();
-            cut -= &next[k] * &ahead;
+            add_product(cut.as_mut(), -1.0, next[k].as_ref(), cuts[k + 1].as_ref());
         }
         cuts[k] = cut;
     }

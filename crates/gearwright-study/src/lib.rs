@@ -27,6 +27,11 @@ pub trait RunObserver: Observer {
 
 impl RunObserver for () {}
 
+/// A fault of the input that shows only in the run.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub struct Refused(pub String);
+
 /// Passes on what the solver reports.
 struct AsObserver<'a>(&'a dyn RunObserver);
 

@@ -3,7 +3,6 @@
 //! | module | holds |
 //! |---|---|
 //! | [`run`] | a case from start to published results |
-//! | [`folder`] | the results folder |
 //! | [`cli`] | commands and progress; the only module that writes to the terminal |
 //!
 //! A case, from text to gears in mesh; [`run::run`] would compute it into a folder:
@@ -23,5 +22,4 @@
 //! ```
 
 pub mod cli;
-pub mod folder;
 pub mod run;

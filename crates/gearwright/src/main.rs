@@ -3,17 +3,16 @@
 use std::process::ExitCode;
 
 use clap::Parser as _;
-use gearwright::cli::{Cli, execute};
+use gearwright::cli::exit::Exit;
+use gearwright::cli::{Cli, execute, output};
 
 fn main() -> ExitCode {
-    match execute(&Cli::parse()) {
-        Ok(text) => {
-            print!("{text}");
-            ExitCode::SUCCESS
-        }
+    let ended = execute(&Cli::parse()).and_then(|done| output::print(&done.text).map(|()| done.exit));
+    match ended {
+        Ok(exit) => exit.into(),
         Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::FAILURE
+            output::note(&format!("error: {error:#}"));
+            Exit::of(&error).into()
         }
     }
 }

@@ -75,6 +75,142 @@ fn run_again_replaces_results_but_never_a_foreign_folder() {
 }
 
 #[test]
+fn verify_finds_changed_and_missing_results_and_leaves_other_files_alone() {
+    let scratch = Scratch::new();
+    scratch.write("small.toml", SMALL);
+    let verify = || {
+        let output = gearwright(scratch.path(), &["verify", "out/small"]);
+        (output.status.code(), text(&output.stdout) + &text(&output.stderr))
+    };
+    assert_eq!(verify().0, Some(2), "no such folder");
+    assert!(gearwright(scratch.path(), &["run", "small.toml"]).status.success());
+    let (code, said) = verify();
+    assert!(code == Some(0) && said.contains("0 changed, 0 missing, 0 not from gearwright"), "{said}");
+    let series = scratch.path().join("out/small/series.csv");
+    let table = std::fs::read_to_string(&series).unwrap();
+    std::fs::write(&series, table.replacen('1', "2", 1)).unwrap();
+    std::fs::remove_file(scratch.path().join("out/small/gear.vtu")).unwrap();
+    scratch.write("out/small/my-notes.txt", "mine");
+    let (code, said) = verify();
+    assert_eq!(code, Some(3));
+    for word in ["changed: series.csv", "missing: gear.vtu", "1 not from gearwright"] {
+        assert!(said.contains(word), "{said}");
+    }
+    // a new run keeps the notes and the edited table
+    assert!(gearwright(scratch.path(), &["run", "small.toml"]).status.success());
+    assert!(scratch.path().join("out/small/my-notes.txt").exists());
+    assert_eq!(std::fs::read_to_string(&series).unwrap(), table);
+    assert!(scratch.path().join("out/small/series.csv.kept").exists());
+    assert_eq!(scratch.names(), ["out", "small.toml"]);
+}
+
+/// Runs the program with an exit code.
+fn code(scratch: &Scratch, arguments: &[&str]) -> (Option<i32>, String) {
+    let output = gearwright(scratch.path(), arguments);
+    (output.status.code(), text(&output.stderr))
+}
+
+#[test]
+fn exit_codes_are_a_contract() {
+    let scratch = Scratch::new();
+    scratch.write("small.toml", SMALL);
+    // 0 usable
+    assert_eq!(code(&scratch, &["run", "small.toml"]).0, Some(0));
+    assert_eq!(code(&scratch, &["check", "small.toml"]).0, Some(0));
+    // 1 error: the results cannot be written below a file
+    scratch.write("file", "x");
+    assert_eq!(code(&scratch, &["run", "small.toml", "--out", "file/results"]).0, Some(1));
+    // 2 refused: command line, case, target
+    scratch.write("wrong.toml", &SMALL.replace("teeth = 25", "teeth = 2"));
+    scratch.write("photos/a.jpg", "x");
+    for refused in [
+        &["run"][..],
+        &["run", "absent.toml"],
+        &["run", "wrong.toml"],
+        &["check", "wrong.toml"],
+        &["run", "small.toml", "--threads", "0"],
+        &["run", "small.toml", "--threads", "1000000"],
+        &["run", "small.toml", "--out", "photos"],
+        &["init", "nonsense"],
+        &["explain", "nonsense"],
+        &["schema", "nonsense"],
+        &["hums"],
+        &["hums", "--signal", "absent.wav", "--teeth", "20", "--speed-hz", "10"],
+        &["verify", "photos"],
+    ] {
+        let (code, said) = code(&scratch, refused);
+        assert!(code == Some(2) && said.contains("error:"), "{refused:?}: {code:?} {said}");
+    }
+    // 3 unusable: a load that needs wider contact grids than the teeth are long
+    scratch.write("overloaded.toml", &SMALL.replace("torque_n_m = 200.0", "torque_n_m = 2e6"));
+    let (overloaded, said) = code(&scratch, &["run", "overloaded.toml"]);
+    assert!(overloaded == Some(3) && said.contains("10 of 10 positions have no usable answer"), "{overloaded:?} {said}");
+    assert!(scratch.path().join("out/overloaded/series.csv").exists());
+    // the help holds the contract
+    let help = text(&gearwright(scratch.path(), &["--help"]).stdout);
+    for line in ["0    done", "1    error", "2    refused", "3    results written", "130  stopped"] {
+        assert!(help.contains(line), "{line}: {help}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_signal_stops_a_run_with_130_and_leaves_nothing_behind() {
+    let scratch = Scratch::new();
+    scratch.write("long.toml", &SMALL.replace("positions_per_cycle = 10", "positions_per_cycle = 2000"));
+    let child = std::process::Command::new(env!("CARGO_BIN_EXE_gearwright"))
+        .args(["run", "long.toml"])
+        .current_dir(scratch.path())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    let work = scratch.path().join("out/.long.gearwright-new");
+    while !work.exists() {
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    // the handler is set before the folder is made
+    let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    let output = child.wait_with_output().unwrap();
+    let said = text(&output.stderr);
+    assert!(output.status.code() == Some(130) && said.contains("stopped"), "{:?} {said}", output.status);
+    assert_eq!(scratch.names(), ["long.toml"]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn standard_output_may_be_closed_or_full() {
+    use std::process::{Command, Stdio};
+    let scratch = Scratch::new();
+    scratch.write("small.toml", SMALL);
+    let program = || {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_gearwright"));
+        command.current_dir(scratch.path()).stderr(Stdio::piped());
+        command
+    };
+    // a reader that has gone
+    for arguments in [&["schema", "transmission"][..], &["explain"], &["check", "small.toml"]] {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = program().args(arguments).stdout(writer).output().unwrap();
+        assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), ""), "{arguments:?}");
+    }
+    // a full disk
+    for arguments in [&["check", "small.toml"][..], &["schema", "transmission"], &["run", "small.toml"]] {
+        let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
+        let output = program().args(arguments).stdout(full).output().unwrap();
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(said.contains("error: standard output cannot be written") && !said.contains("panicked"), "{said}");
+    }
+    // standard error gone as well: the exit code stays
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let status = program().args(["run", "absent.toml"]).stderr(writer).status().unwrap();
+    assert_eq!(status.code(), Some(2));
+}
+
+#[test]
 fn threads_do_not_change_the_table() {
     let scratch = Scratch::new();
     scratch.write("small.toml", SMALL);

@@ -179,6 +179,24 @@ impl Observer for StopAfter {
 
 impl RunObserver for StopAfter {}
 
+/// Keeps the names of the stages.
+#[derive(Default)]
+struct Stages(std::sync::Mutex<Vec<String>>);
+
+impl Observer for Stages {}
+
+impl RunObserver for Stages {
+    fn stage(&self, name: &str) {
+        self.0.lock().unwrap().push(name.into());
+    }
+}
+
+impl Stages {
+    fn hold(&self, words: &str) -> bool {
+        self.0.lock().unwrap().iter().any(|stage| stage.contains(words))
+    }
+}
+
 #[test]
 fn interrupted_runs_go_on_with_the_same_bits() {
     let scratch = Scratch::with_pair();
@@ -186,24 +204,26 @@ fn interrupted_runs_go_on_with_the_same_bits() {
     let (whole, summary) = scratch.run("whole", &content);
     let case = gearwright_case::load(&scratch.path().join("whole.toml")).unwrap();
     let target = scratch.path().join("pieces");
-    let checkpoint = scratch.path().join("pieces.checkpoint.json");
+    let checkpoint = scratch.path().join("pieces.checkpoint");
     // in the healthy transient, in the damaged transient, in a record: each goes on where the one before was stopped
     for steps in [33, 700, 900] {
         let stopped = gearwright::run::run(&case, &target, &StopAfter(AtomicUsize::new(steps)));
         let message = stopped.unwrap_err().to_string();
-        assert!(message.contains("stopped") && message.contains("pieces.checkpoint.json"), "{message}");
+        assert!(message.contains("stopped") && message.contains("pieces.checkpoint"), "{message}");
         assert!(checkpoint.exists() && !target.exists());
     }
-    let output = gearwright(scratch.path(), &["run", "whole.toml", "--out", "pieces", "--threads", "1"]);
-    assert!(output.status.success() && text(&output.stderr).contains("taking up"), "{}", text(&output.stderr));
+    let stages = Stages::default();
+    gearwright::run::run(&case, &target, &stages).unwrap();
+    assert!(stages.hold("taking up") && !stages.hold("not taking up"));
     assert!(!checkpoint.exists(), "removed with the results there");
-    // the summary holds all digits; how long it took, and how energies were summed, is the run's own
+    // the summary holds all digits, the account of energies among them; how long it took is the run's own
     let pieces = std::fs::read_to_string(target.join("summary.json")).unwrap();
     let pieces: Value = serde_json::from_str(&pieces).unwrap();
     for index in 0..3 {
         let state = |of: &Value| {
             let mut state = of["speeds"][0]["states"][index].clone();
-            assert!(state.as_object_mut().unwrap().remove("work").is_some());
+            assert!(state["work"].as_object_mut().unwrap().remove("time_s").is_some());
+            assert!(state["work"]["external_j"].as_f64().unwrap() != 0.0);
             state
         };
         assert_eq!(state(&summary), state(&pieces));
@@ -213,12 +233,43 @@ fn interrupted_runs_go_on_with_the_same_bits() {
     for (a, b) in whole.iter().zip(&pieces) {
         assert!(a == b, "{} differs after an interruption", a.0);
     }
-    // a checkpoint of another case is not taken up
-    let stopped = gearwright::run::run(&case, &target, &StopAfter(AtomicUsize::new(100)));
-    assert!(stopped.is_err() && checkpoint.exists());
-    scratch.write("whole.toml", &content.replace("speed_rpm = 3000.0", "speed_rpm = 2900.0"));
-    let output = gearwright(scratch.path(), &["run", "whole.toml", "--out", "pieces"]);
-    assert!(output.status.success() && !text(&output.stderr).contains("taking up"), "{}", text(&output.stderr));
+}
+
+#[test]
+fn a_checkpoint_that_does_not_fit_is_not_taken_up() {
+    let scratch = Scratch::with_pair();
+    let content = format!("{}mesh_cycles = 2\n[output]\nplots = false\n[checkpoint]\nevery_steps = 10\n", healthy());
+    scratch.write("case.toml", &content);
+    let case = gearwright::case::load(&scratch.path().join("case.toml")).unwrap();
+    let target = scratch.path().join("pieces");
+    let checkpoint = scratch.path().join("pieces.checkpoint");
+    let stop = || {
+        assert!(gearwright::run::run(&case, &target, &StopAfter(AtomicUsize::new(25))).is_err());
+        std::fs::read_to_string(&checkpoint).unwrap()
+    };
+    let start = |case: &gearwright::case::Case| {
+        let stages = Stages::default();
+        gearwright::run::run(case, &target, &stages).unwrap();
+        let heard = |words: &str| stages.hold(words);
+        [heard("not taking up"), heard("damaged"), heard("another case"), heard("another build")]
+    };
+    // one digit of the content: read as valid JSON before there was a checksum, and changed the results in silence
+    let saved = stop();
+    let at = saved.find("transmission_error").unwrap() + "transmission_error\":1".len();
+    let digit = saved[at..].find(|c: char| c.is_ascii_digit()).unwrap() + at;
+    let other = if &saved[digit..=digit] == "1" { "2" } else { "1" };
+    std::fs::write(&checkpoint, format!("{}{other}{}", &saved[..digit], &saved[digit + 1..])).unwrap();
+    assert_eq!(start(&case), [true, true, false, false]);
+    // another case
+    stop();
+    scratch.write("case.toml", &content.replace("speed_rpm = 3000.0", "speed_rpm = 2900.0"));
+    let changed = gearwright::case::load(&scratch.path().join("case.toml")).unwrap();
+    assert_eq!(start(&changed), [true, false, true, false]);
+    // another build of the program: this test's is not that of the command
+    stop();
+    scratch.write("case.toml", &content);
+    let output = gearwright(scratch.path(), &["run", "case.toml", "--out", "pieces"]);
+    assert!(output.status.success() && text(&output.stderr).contains("another build"), "{}", text(&output.stderr));
 }
 
 #[test]

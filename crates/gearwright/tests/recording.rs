@@ -274,7 +274,9 @@ fn trend_raises_alarms_after_the_healthy_ones_and_tells_what_it_cannot_use() {
     scratch.write("runs/notes.pdf", "not a recording");
     let arguments =
         ["hums", "--signal", "runs", "--rate-hz", "5120", "--teeth", "27", "--tach", "tacho", "--healthy-first", "6"];
-    let screen = succeed(scratch.path(), &arguments);
+    let output = gearwright(scratch.path(), &arguments);
+    let (screen, warning) = (text(&output.stdout), text(&output.stderr));
+    assert!(output.status.code() == Some(3) && warning.contains("1 of 13 recordings"), "{warning}");
     assert!(screen.contains("13 recordings, 1 of them unusable") && screen.contains("alarms:"), "{screen}");
     assert!(screen.lines().count() < 25, "{screen}");
     let out = scratch.path().join("out/runs");

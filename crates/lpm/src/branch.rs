@@ -11,7 +11,7 @@ use crate::sweep::Measure;
 
 /// Options of [`crate::Model::continuation`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContinuationOptions {
+pub struct ContinuationOptions<'a> {
     /// Least mesh frequency (Hz).
     pub from: f64,
     /// Largest mesh frequency (Hz).
@@ -23,7 +23,7 @@ pub struct ContinuationOptions {
     /// Points at most.
     pub max_points: usize,
     /// Integration.
-    pub integration: Options,
+    pub integration: Options<'a>,
     /// Relative residual aimed at. Where noise of the adaptive steps keeps Newton's method above it (unresolved ringing of
     /// stiff supports, forces that jump), the best iterate counts as long as it is within 1000 integration tolerances.
     pub tolerance: f64,
@@ -31,7 +31,7 @@ pub struct ContinuationOptions {
     pub sampling: Sampling,
 }
 
-impl Default for ContinuationOptions {
+impl Default for ContinuationOptions<'_> {
     /// 200 to 4000 Hz downwards, steps up to 0.1, integration at 1e-9, residual 1e-8, 64 samples per cycle.
     fn default() -> Self {
         Self {
@@ -47,7 +47,7 @@ impl Default for ContinuationOptions {
     }
 }
 
-impl ContinuationOptions {
+impl ContinuationOptions<'_> {
     /// Checks ranges.
     pub fn validate(&self) -> Result<(), LpmError> {
         self.integration.validate()?;

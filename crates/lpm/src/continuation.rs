@@ -84,7 +84,7 @@ type Linearised<const N: usize> = (Vector<N>, Vec<Vec<f64>>, Vec<Vector<N>>);
 
 struct Tracer<'a, const N: usize> {
     s: &'a System<N>,
-    o: &'a ContinuationOptions,
+    o: &'a ContinuationOptions<'a>,
     f_unit: f64,
     method: Method,
     /// Unknown components of the state: those the method resolves.
@@ -258,6 +258,9 @@ fn trace<const N: usize>(
             (bend > MAX_BEND).then_some((p, next))
         });
         let Some((point, next)) = step else {
+            if o.integration.stop.is_requested() {
+                return Err(LpmError::Stopped { phase: 0.0 });
+            }
             ds *= 0.5;
             if ds < 1e-8 {
                 out.end = BranchEnd::NoConvergence;

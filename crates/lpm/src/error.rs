@@ -98,6 +98,35 @@ pub enum LpmError {
         /// Bound that was passed (m).
         limit: f64,
     },
+    /// The integration would need more steps than it may take: a mesh cycle is too long against the period of the mesh mode.
+    #[error(
+        "{cycles} mesh cycles at {frequency} Hz need at least {needed:.1e} steps, an eighth of the mesh mode's period each; \
+         at most {limit:.0e} are allowed: raise the mesh frequency, or use the static answer at such speeds"
+    )]
+    TooManySteps {
+        /// Mesh cycles asked for.
+        cycles: f64,
+        /// Mesh frequency (Hz).
+        frequency: f64,
+        /// Steps needed at least.
+        needed: f64,
+        /// Steps allowed.
+        limit: u64,
+    },
+    /// The integration took all steps it may take.
+    #[error("the integration took its {limit:.0e} steps without an end, at mesh cycle {phase:.6}")]
+    StepLimit {
+        /// Mesh cycle reached.
+        phase: f64,
+        /// Steps allowed.
+        limit: u64,
+    },
+    /// Stopped on request.
+    #[error("stopped at mesh cycle {phase:.6}")]
+    Stopped {
+        /// Mesh cycle reached.
+        phase: f64,
+    },
     /// More contact events in one mesh cycle than a solution can have.
     #[error("more than {limit} contact events in one period, at mesh cycle {phase}")]
     TooManyEvents {

@@ -19,6 +19,7 @@
 //! | sweep up or down in speed | [`Model::sweep`] with [`frequencies`] |
 //! | whole resonance curve, unstable parts too | [`Model::continuation`] |
 //! | one periodic solution, stable or not | [`Model::shoot`] |
+//! | what eliminating the supports costs | [`elimination_error`], [`elimination_frequency_error`] |
 //! | parametric stability in permanent contact | [`Model::parametric_multipliers`] |
 //! | error against run time of the integrators | [`work_precision`] |
 //!
@@ -30,6 +31,7 @@
 //! | module | holds |
 //! |---|---|
 //! | `curve`, `excitation` | periodic curves, jumps and kinks |
+//! | `elimination` | error of eliminated supports, estimated |
 //! | `model`, `system` | equations of motion, input free or prescribed, supports integrated, eliminated or rigid |
 //! | `integrate` | four methods, step control, contact events, derivative of the flow |
 //! | `periodic`, `floquet`, `branch`, `continuation`, `sweep` | steady states, stability, branches |
@@ -81,6 +83,7 @@ mod branch;
 mod continuation;
 mod curve;
 mod damage;
+mod elimination;
 mod error;
 mod excitation;
 mod floquet;
@@ -95,6 +98,7 @@ mod spectrum;
 mod sweep;
 mod system;
 
+pub use elimination::{elimination_error, elimination_frequency_error};
 pub use branch::{Branch, BranchEnd, BranchPoint, ContinuationOptions, TurningPoint};
 pub use curve::{Curve, CurveRange, Interpolation};
 pub use damage::{DamageResponse, SteadyResponse};
@@ -102,7 +106,7 @@ pub use error::LpmError;
 pub use excitation::Excitation;
 pub use floquet::{Multiplier, Stability, stability};
 pub use impulse::{ImpulseTest, mesh_average};
-pub use integrate::{Event, Method, Options, Stats, StepControl};
+pub use integrate::{Event, Method, Options, STOP_STEPS, Stats, StepControl, Stop};
 pub use model::{Gear, GearPair, Input, Model, Separation, State, Supports};
 pub use periodic::{Orbit, OrbitStatus, ShootingOptions, Steady, SteadyOptions};
 pub use precision::{SUPPORT_STIFFNESSES, WorkPrecision, work_precision};

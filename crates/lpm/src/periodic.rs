@@ -25,9 +25,9 @@ const STALE_PERIODS: usize = 20;
 
 /// Options of [`Model::shoot`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ShootingOptions {
+pub struct ShootingOptions<'a> {
     /// Integration.
-    pub integration: Options,
+    pub integration: Options<'a>,
     /// Relative residual at which the orbit counts as found (1e-13 to 1e-3).
     pub tolerance: f64,
     /// Newton iterations allowed.
@@ -36,14 +36,14 @@ pub struct ShootingOptions {
     pub multiple: usize,
 }
 
-impl Default for ShootingOptions {
+impl Default for ShootingOptions<'_> {
     /// Residual 1e-9 with integration at 1e-10, 30 iterations, the period of the excitation.
     fn default() -> Self {
         Self { integration: Options::with_tolerance(1e-10), tolerance: 1e-9, max_iterations: 30, multiple: 1 }
     }
 }
 
-impl ShootingOptions {
+impl ShootingOptions<'_> {
     /// Checks ranges.
     pub fn validate(&self) -> Result<(), LpmError> {
         self.integration.validate()?;
@@ -100,9 +100,9 @@ impl Orbit {
 
 /// Options of [`Model::steady_state`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SteadyOptions {
+pub struct SteadyOptions<'a> {
     /// Integration.
-    pub integration: Options,
+    pub integration: Options<'a>,
     /// Relative change from period to period at which the motion counts as steady (1e-12 to 0.1). Adaptive integration
     /// repeats itself to some thirty times its own tolerance: where this is less, that counts.
     pub tolerance: f64,
@@ -114,14 +114,14 @@ pub struct SteadyOptions {
     pub polish: bool,
 }
 
-impl Default for SteadyOptions {
+impl Default for SteadyOptions<'_> {
     /// Change below 1e-7, 20000 mesh cycles, subharmonics to order 8, polished.
     fn default() -> Self {
         Self { integration: Options::default(), tolerance: 1e-7, max_cycles: 20_000, max_multiple: 8, polish: true }
     }
 }
 
-impl SteadyOptions {
+impl SteadyOptions<'_> {
     /// Checks ranges.
     pub fn validate(&self) -> Result<(), LpmError> {
         self.integration.validate()?;
@@ -254,11 +254,15 @@ fn steady<const N: usize>(
                 multiple: 1,
             };
             // A failure to polish only means that waiting goes on.
-            if let Ok(orbit) = shoot(s, frequency, cursor.z, &shooting) {
-                let found = s.import(&orbit.state)?;
-                if orbit.is_attractor() && distance(s, run.method, &found, &cursor.z) < 0.1 {
-                    return done(&found, Some(1), n, orbit.residual);
+            match shoot(s, frequency, cursor.z, &shooting) {
+                Ok(orbit) => {
+                    let found = s.import(&orbit.state)?;
+                    if orbit.is_attractor() && distance(s, run.method, &found, &cursor.z) < 0.1 {
+                        return done(&found, Some(1), n, orbit.residual);
+                    }
                 }
+                Err(stopped @ LpmError::Stopped { .. }) => return Err(stopped),
+                Err(_) => {}
             }
         }
     }
@@ -325,6 +329,9 @@ fn shoot<const N: usize>(
                 trial.set(i, z.get(i) + fraction * d * s.unit(i));
             }
             let mapped = period_map(&run, trial, o.multiple, &by);
+            if let Err(stopped @ LpmError::Stopped { .. }) = mapped {
+                return Err(stopped);
+            }
             if let Ok((e, c)) = mapped {
                 let r = distance(s, run.method, &e, &trial);
                 if r < residual || attempt == 6 {

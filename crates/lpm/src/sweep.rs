@@ -12,16 +12,16 @@ use crate::response::{Response, Sampling};
 
 /// Options of [`Model::sweep`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SweepOptions {
+pub struct SweepOptions<'a> {
     /// Wait for the steady state at each speed.
-    pub steady: SteadyOptions,
+    pub steady: SteadyOptions<'a>,
     /// Sampling of the steady response.
     pub sampling: Sampling,
     /// Periods of the excitation over which motion that is not periodic is measured.
     pub aperiodic_periods: usize,
 }
 
-impl Default for SweepOptions {
+impl Default for SweepOptions<'_> {
     /// Default waits and sampling; 50 periods where motion is not periodic.
     fn default() -> Self {
         Self { steady: SteadyOptions::default(), sampling: Sampling::default(), aperiodic_periods: 50 }

@@ -133,6 +133,13 @@ pub struct Runner<'a> {
 }
 
 impl Runner<'_> {
+    /// Takes up energies and counters of an earlier run that [`InitialState::Given`] goes on from: the totals are then those of one run in one
+    /// piece, to the bit.
+    pub fn take_up(&mut self, energy: EnergyBalance, stats: RunStats) {
+        self.energy = energy;
+        self.stepper.stats = stats;
+    }
+
     /// Where the run stands: what [`InitialState::Given`] takes to go on from here.
     #[must_use]
     pub fn state(&self) -> &DynamicsState {

@@ -8,6 +8,7 @@ use super::model::PairModel;
 use super::result::PositionResult;
 use crate::body::GearBody;
 use crate::error::FecmError;
+use crate::linalg::add_product;
 use crate::ring::solve_ring;
 
 /// Displacement field of a gear: hub at rest.
@@ -91,7 +92,7 @@ fn recover(body: &GearBody, index: usize, loads: &[Option<SectorLoad<'_>>]) -> R
             }
             None => Mat::zeros(family.condensed.interior_size(), 1),
         };
-        interior -= family.condensed.retained_solution() * &ends[tooth];
+        add_product(interior.as_mut(), -1.0, family.condensed.retained_solution(), ends[tooth].as_ref());
         let mut field = vec![0.0; shape.mesh.nodes.len() * block];
         for node in 0..shape.mesh.nodes.len() as u32 {
             for d in 0..block {

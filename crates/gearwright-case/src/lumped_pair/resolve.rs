@@ -28,8 +28,8 @@ pub struct LumpedPairCase {
     pub pair: GearPair,
     /// Mesh damping.
     pub damping: Damping,
-    /// Treatment of supports.
-    pub supports: lpm::Supports,
+    /// Treatment of supports; `None`: eliminated where the estimated error allows it, otherwise integrated.
+    pub supports: Option<lpm::Supports>,
     /// Mesh cycles in a rotation of the damaged gear, where its teeth are known.
     pub rotation: Option<usize>,
     /// Interpolation of points.
@@ -160,10 +160,13 @@ fn fill_from_geometry(inputs: &mut LumpedPair, statics: &SpurPairCase) {
     inputs.pair.gear_torque_n_m.get_or_insert(statics.inputs.load.torque_n_m);
 }
 
-fn gear_pair(inputs: &mut LumpedPair, document: &Node, faults: &mut Vec<Fault>) -> (GearPair, Damping, lpm::Supports) {
+fn gear_pair(inputs: &mut LumpedPair, document: &Node, faults: &mut Vec<Fault>) -> (GearPair, Damping, Option<lpm::Supports>) {
     let pair = &mut inputs.pair;
     let known = pair.pinion.support_stiffness_n_per_m.is_some() || pair.gear.support_stiffness_n_per_m.is_some();
-    let supports = *pair.supports.get_or_insert(if known { Supports::Eliminated } else { Supports::Rigid });
+    if !known {
+        pair.supports.get_or_insert(Supports::Rigid);
+    }
+    let supports = pair.supports;
     let free = pair.input == Input::Free;
     let mut need = |value: Option<f64>, key: &str, what: &str| {
         value.unwrap_or_else(|| {
@@ -179,17 +182,18 @@ fn gear_pair(inputs: &mut LumpedPair, document: &Node, faults: &mut Vec<Fault>) 
         need(pair.pinion.base_radius_mm, "pinion.base_radius_mm", " with free input");
         need(pair.pinion.inertia_kg_m2, "pinion.inertia_kg_m2", " with free input");
     }
-    if supports == Supports::Integrated {
-        need(pair.pinion.mass_kg, "pinion.mass_kg", " with integrated supports");
-        need(pair.gear.mass_kg, "gear.mass_kg", " with integrated supports");
+    if supports != Some(Supports::Rigid) {
+        // of eliminated supports too: the error of elimination depends on them
+        need(pair.pinion.mass_kg, "pinion.mass_kg", " with elastic supports");
+        need(pair.gear.mass_kg, "gear.mass_kg", " with elastic supports");
     }
     for (name, disc) in [("pinion", &pair.pinion), ("gear", &pair.gear)] {
         let key = format!("pair.{name}.support_stiffness_n_per_m");
         match (supports, disc.support_stiffness_n_per_m) {
-            (Supports::Rigid, Some(_)) => {
+            (Some(Supports::Rigid), Some(_)) => {
                 faults.push(document.fault(&key, "must be left out with rigid supports (pair.supports)"));
             }
-            (Supports::Rigid, None) | (_, Some(_)) => {}
+            (Some(Supports::Rigid), None) | (_, Some(_)) => {}
             (_, None) => faults.push(document.fault(&key, "this key is required unless pair.supports is \"rigid\"")),
         }
     }
@@ -231,11 +235,11 @@ fn gear_pair(inputs: &mut LumpedPair, document: &Node, faults: &mut Vec<Fault>) 
         damping_when_apart: pair.damping_when_apart,
         backlash: pair.backlash_um.map(|b| b * UM),
     };
-    let supports = match supports {
+    let supports = supports.map(|supports| match supports {
         Supports::Integrated => lpm::Supports::Integrated,
         Supports::Eliminated => lpm::Supports::Eliminated,
         Supports::Rigid => lpm::Supports::Rigid,
-    };
+    });
     (result, damping, supports)
 }
 

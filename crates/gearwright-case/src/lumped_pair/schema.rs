@@ -71,7 +71,8 @@ pub struct Pair {
     #[schemars(range(min = 1e-6, max = 1e6))]
     pub backlash_um: Option<f64>,
     /// Treatment of the supports: "integrated" (three coordinates), "eliminated" (quasi-static, in series with the mesh; one
-    /// coordinate), "rigid". Default: "eliminated" where support stiffnesses are given, else "rigid".
+    /// coordinate; refused where the estimated error of the response is above 1 %), "rigid". Default: with support stiffnesses
+    /// "eliminated" where that error allows it, otherwise "integrated"; without any, "rigid".
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub supports: Option<Supports>,
     /// The driving gear.
@@ -128,7 +129,7 @@ pub struct Disc {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-4, max = 100000.0))]
     pub base_radius_mm: Option<f64>,
-    /// Mass (kg). Used with integrated supports.
+    /// Mass (kg). Needed with elastic supports.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-12, max = 1e9))]
     pub mass_kg: Option<f64>,

@@ -4,13 +4,15 @@ pub mod summary;
 pub mod tables;
 
 use gearwright_case::lumped_pair::curves::Curves;
-use lpm::{Branch, DamageResponse, ImpulseTest, Model, Response, Spectrum, SweepPoint};
+use lpm::{Branch, DamageResponse, ImpulseTest, Model, Response, Spectrum, Supports, SweepPoint};
 
 /// A case, computed.
 #[derive(Debug)]
 pub struct Lumped {
     /// The healthy state first.
     pub states: Vec<State>,
+    /// Treatment of the supports.
+    pub treatment: Treatment,
     /// What the analyses show.
     pub findings: Findings,
     /// Wall times.
@@ -28,6 +30,23 @@ pub struct State {
     pub model: Model,
     /// Mesh cycles that damage changes, from and to; `None` for the healthy state.
     pub damaged_cycles: Option<(usize, usize)>,
+}
+
+/// Treatment of the supports of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Treatment {
+    /// The treatment.
+    pub supports: Supports,
+    /// Largest estimated error of eliminating the supports, and the mesh frequency of it (Hz; 0 for free motion); `None` where there are none.
+    pub elimination: Option<(f64, f64)>,
+}
+
+impl Treatment {
+    /// Where an error is, in words.
+    #[must_use]
+    pub fn place(frequency: f64) -> String {
+        if frequency > 0.0 { format!("at {frequency:.4} Hz") } else { "of the natural frequency".to_owned() }
+    }
 }
 
 /// Everything found.

@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use lpm::{BranchEnd, Input, LpmError, Model, Response};
+use lpm::{BranchEnd, Input, LpmError, Model, Response, Supports};
 use serde::Serialize;
 
-use super::{BranchResult, Findings, State, SweepResult, TimeResponse};
+use super::{BranchResult, Findings, State, SweepResult, TimeResponse, Treatment};
 use gearwright_case::lumped_pair::schema::LumpedPair;
 use gearwright_case::{LumpedPairCase, Notes};
 
@@ -63,6 +63,12 @@ pub struct ModelSummary {
     mean_mesh_force_n: f64,
     mesh_damping_n_s_per_m: f64,
     coordinates: usize,
+    /// integrated, eliminated or rigid.
+    supports: &'static str,
+    /// Largest estimated error of the response with eliminated supports, of its variation; none with rigid ones.
+    elimination_error: Option<f64>,
+    /// Mesh frequency of that error (Hz); 0 for free motion.
+    elimination_error_at_hz: Option<f64>,
 }
 
 /// A state.
@@ -163,7 +169,7 @@ pub struct DamageSummary {
 /// Those of the model with the other input.
 pub fn summary<'a>(
     case: &'a LumpedPairCase,
-    states: &[State],
+    (states, treatment): (&[State], &Treatment),
     findings: &Findings,
     times: Times,
 ) -> Result<Summary<'a>, LpmError> {
@@ -190,6 +196,13 @@ pub fn summary<'a>(
             mean_mesh_force_n: pair.mean_force(),
             mesh_damping_n_s_per_m: pair.mesh_damping,
             coordinates: states.first().map_or(1, |s| s.model.coordinates()),
+            supports: match treatment.supports {
+                Supports::Integrated => "integrated",
+                Supports::Eliminated => "eliminated",
+                Supports::Rigid => "rigid",
+            },
+            elimination_error: treatment.elimination.map(|worst| worst.0),
+            elimination_error_at_hz: treatment.elimination.map(|worst| worst.1),
         },
         states: states.iter().map(|state| state_summary(case, state)).collect::<Result<_, _>>()?,
         time_response: time(findings),
@@ -336,6 +349,10 @@ pub fn screen(case: &LumpedPairCase, s: &Summary<'_>) -> String {
         "moving mass, mean mesh force",
         format!("{:.4} kg, {:.1} N; {} coordinate(s)", m.moving_mass_kg, m.mean_mesh_force_n, m.coordinates),
     );
+    if let (Some(error), Some(at)) = (m.elimination_error, m.elimination_error_at_hz) {
+        let error = format!("{}; eliminating them: {:.2} % error {}", m.supports, 100.0 * error, Treatment::place(at));
+        line("supports", error);
+    }
     if let Some(h) = s.states.first() {
         let (k, e) = (&h.mesh_stiffness_n_per_um, &h.ste_um);
         line("mesh stiffness, local slope", format!("{:.1} to {:.1} N/um, mean {:.1}", k.min, k.max, k.mean));

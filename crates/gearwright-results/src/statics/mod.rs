@@ -66,10 +66,11 @@ impl Statics {
         std::iter::once(&self.healthy).chain(self.map.as_ref()).chain(self.damaged.iter().map(|d| &d.series))
     }
 
-    /// Positions without a usable answer.
+    /// Positions without a usable answer, and all positions.
     #[must_use]
-    pub fn unusable(&self) -> usize {
-        self.series().flat_map(|s| s.results.iter().flatten()).filter(|r| !r.status.is_usable()).count()
+    pub fn unusable(&self) -> (usize, usize) {
+        let all = || self.series().flat_map(|s| s.results.iter().flatten());
+        (all().filter(|position| !position.status.is_usable()).count(), all().count())
     }
 }
 

@@ -1,13 +1,12 @@
 //! What a run needs to go on after an interruption, in a file beside the results folder.
 //!
-//! The file appears complete or not at all, holds the version of the program and a fingerprint of the resolved case, and is taken up only where
-//! both are those of the case at hand. Numbers are written so that they read back to the same bits.
+//! The file is an entry of [`gearwright_store`]: it appears complete or not at all, with a checksum, the hash of the program and of the case, and is
+//! taken up only where all three fit. Numbers are written so that they read back to the same bits.
 
-use std::io::{BufReader, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
-use serde::{Deserialize, Serialize};
+use gearwright_store::file_system::Disk;
+use gearwright_store::{Digest, Found, Ignored, read_entry, remove_entry, write_entry};
 
 use super::simulate::Progress;
 use gearwright_case::DynamicsCase;
@@ -16,15 +15,10 @@ use gearwright_case::DynamicsCase;
 #[derive(Debug)]
 pub struct Checkpoint {
     file: PathBuf,
-    content: Content,
-}
-
-#[derive(Debug, Serialize, Deserialize)]
-struct Content {
-    version: String,
-    fingerprint: u64,
+    key: Digest,
     /// In the order of speeds, then states.
     runs: Vec<Progress>,
+    ignored: Option<Ignored>,
 }
 
 impl Checkpoint {
@@ -32,62 +26,52 @@ impl Checkpoint {
     #[must_use]
     pub fn open(case: &DynamicsCase, target: &Path, count: usize) -> Self {
         let mut name = target.file_name().unwrap_or_default().to_owned();
-        name.push(".checkpoint.json");
+        name.push(".checkpoint");
         let file = target.with_file_name(name);
-        let fresh = Content {
-            version: env!("CARGO_PKG_VERSION").into(),
-            fingerprint: fingerprint(case),
-            runs: vec![Progress::default(); count],
+        let key = Digest::of(format!("{case:?}").as_bytes());
+        let fresh = || vec![Progress::default(); count];
+        let (runs, ignored) = match read_entry::<Vec<Progress>>(&Disk, &file, key) {
+            Found::Value(runs) if runs.len() == count => (runs, None),
+            Found::Value(_) => (fresh(), Some(Ignored::OtherKey)),
+            Found::Absent => (fresh(), None),
+            Found::Ignored(reason) => (fresh(), Some(reason)),
         };
-        let fits = |found: &Content| {
-            found.version == fresh.version && found.fingerprint == fresh.fingerprint && found.runs.len() == count
-        };
-        // one that cannot be read, or is of another case, is as none
-        let found = std::fs::File::open(&file).ok();
-        let found: Option<Content> = found.and_then(|f| serde_json::from_reader(BufReader::new(f)).ok());
-        let content = found.filter(fits).unwrap_or(fresh);
-        Self { file, content }
+        Self { file, key, runs, ignored }
     }
 
     /// Whether anything was run before.
     #[must_use]
     pub fn is_taken_up(&self) -> bool {
-        self.content.runs.iter().any(|run| run.state.is_some())
+        self.runs.iter().any(|run| run.state.is_some())
+    }
+
+    /// Why a checkpoint that is there is not taken up.
+    #[must_use]
+    pub fn ignored(&self) -> Option<Ignored> {
+        self.ignored
     }
 
     /// A run as far as it is saved.
     #[must_use]
     pub fn run(&self, index: usize) -> Progress {
-        self.content.runs.get(index).cloned().unwrap_or_default()
+        self.runs.get(index).cloned().unwrap_or_default()
     }
 
     /// Saves a run.
     ///
     /// # Errors
-    /// What the file system says.
+    /// Those of the file system.
     pub fn save(&mut self, index: usize, progress: &Progress) -> anyhow::Result<()> {
-        if let Some(run) = self.content.runs.get_mut(index) {
+        if let Some(run) = self.runs.get_mut(index) {
             run.clone_from(progress);
         }
-        self.write().with_context(|| format!("the checkpoint {} cannot be written", self.file.display()))
-    }
-
-    fn write(&self) -> anyhow::Result<()> {
-        let folder = self.file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let temporary = tempfile::NamedTempFile::new_in(folder)?;
-        let mut writer = BufWriter::new(temporary);
-        serde_json::to_writer(&mut writer, &self.content)?;
-        writer.flush()?;
-        let temporary = writer.into_inner().map_err(|error| error.into_error())?;
-        temporary.as_file().sync_all()?;
-        temporary.persist(&self.file)?;
-        Ok(())
+        Ok(write_entry(&Disk, &self.file, self.key, &self.runs)?)
     }
 
     /// Removes the file: the results are there.
     pub fn remove(self) {
         // nothing is lost where it stays: it is of a case that is complete
-        let _ = std::fs::remove_file(&self.file);
+        let _ = remove_entry(&Disk, &self.file);
     }
 
     /// The file.
@@ -95,13 +79,4 @@ impl Checkpoint {
     pub fn file(&self) -> &Path {
         &self.file
     }
-}
-
-/// FNV-1a of everything a result depends on.
-fn fingerprint(case: &DynamicsCase) -> u64 {
-    let mut hash: u64 = 0xcbf2_9ce4_8422_2325;
-    for byte in format!("{case:?}").bytes() {
-        hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-    }
-    hash
 }

@@ -58,8 +58,11 @@ pub fn compute(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -
 
     let clock = Instant::now();
     let mut checkpoint = Checkpoint::open(case, target, case.speeds.len() * states.len());
+    let name = checkpoint.file().display();
     if checkpoint.is_taken_up() {
-        observer.stage(&format!("taking up {}", checkpoint.file().display()));
+        observer.stage(&format!("taking up {name}"));
+    } else if let Some(reason) = checkpoint.ignored() {
+        observer.stage(&format!("not taking up {name}: {reason}"));
     }
     let (vibration, resolutions) = resolution::resolutions(case, &states[0].model)?.unzip();
     let steps = vibration.zip(resolutions.as_ref()).map(|(vibration, all)| resolution::told(&vibration, all));

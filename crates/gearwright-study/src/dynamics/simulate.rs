@@ -4,7 +4,12 @@
 //! transmission error repeats; the last of them is the record, or its beginning. A damaged pair sets out from the end of the healthy one's record,
 //! where its teeth stand as at its own start. [`Progress`] holds all that a run needs to go on.
 
-use fecm::dynamics::{DynamicsRequest, DynamicsRun, DynamicsState, InitialState, Motion, PairDynamics, StepRecord};
+use std::time::Duration;
+
+use fecm::dynamics::{
+    DynamicsRequest, DynamicsRun, DynamicsState, EnergyBalance, InitialState, Motion, PairDynamics, RunStats, StepRecord,
+};
+use fecm::lcp::SolveStats;
 use fecm::statics::Observer;
 use serde::{Deserialize, Serialize};
 
@@ -217,7 +222,8 @@ pub fn simulate(
     let tolerance = case.inputs.run.steady_tolerance;
     let initial = progress.state.as_ref().map_or(start, |state| InitialState::Given(state.0.clone()));
     let mut runner = dynamics.start(&plan.request(case, initial, Vec::new()))?;
-    let earlier = progress.work;
+    let (energy, stats) = account(&progress.work);
+    runner.take_up(energy, stats);
     if progress.state.is_none() {
         progress.state = Some(SavedState(runner.state().clone()));
         progress.turn(plan, tolerance);
@@ -227,7 +233,7 @@ pub fn simulate(
         let steps = plan.next_piece(progress, every);
         let shifted = Shifted { inner: observer, done, expected: plan.expected(progress) };
         let run = runner.advance(steps, &shifted)?;
-        progress.work = followed_by(&earlier, &run);
+        progress.work = work(&run);
         progress.state = Some(SavedState(run.state));
         let stopped = run.records.len() < steps;
         progress.samples.extend(run.records.into_iter().map(sample));
@@ -270,25 +276,53 @@ fn sample(record: StepRecord) -> Sample {
     }
 }
 
-/// Work so far with what a runner has done since it was started.
-fn followed_by(work: &Work, run: &DynamicsRun) -> Work {
+/// Work of a run since its start.
+fn work(run: &DynamicsRun) -> Work {
     let (stats, energy) = (&run.stats, &run.energy);
     Work {
-        steps: work.steps + stats.steps,
-        contact_solves: work.contact_solves + stats.solver.solves,
-        pivots: work.pivots + stats.solver.pivots,
-        factorisations: work.factorisations + stats.solver.factorisations,
-        widened_steps: work.widened_steps + stats.widened,
-        steps_with_coast_flanks: work.steps_with_coast_flanks + stats.watched_back,
-        not_converged: work.not_converged + stats.not_converged,
-        worst_complementarity: work.worst_complementarity.max(stats.worst_complementarity),
-        worst_kkt_violation: work.worst_kkt_violation.max(stats.worst_kkt),
-        external_j: work.external_j + energy.external,
-        contact_j: work.contact_j + energy.contact,
-        dissipated_j: work.dissipated_j + energy.dissipated,
-        stored_j: work.stored_j + energy.stored,
-        worst_defect_j: work.worst_defect_j.max(energy.worst_residual),
-        energy_scale_j: work.energy_scale_j.max(energy.scale),
-        time_s: work.time_s + stats.time.as_secs_f64(),
+        steps: stats.steps,
+        contact_solves: stats.solver.solves,
+        pivots: stats.solver.pivots,
+        factorisations: stats.solver.factorisations,
+        widened_steps: stats.widened,
+        steps_with_coast_flanks: stats.watched_back,
+        not_converged: stats.not_converged,
+        worst_complementarity: stats.worst_complementarity,
+        worst_kkt_violation: stats.worst_kkt,
+        external_j: energy.external,
+        contact_j: energy.contact,
+        dissipated_j: energy.dissipated,
+        stored_j: energy.stored,
+        worst_defect_j: energy.worst_residual,
+        energy_scale_j: energy.scale,
+        time_s: stats.time.as_secs_f64(),
     }
+}
+
+/// The engine's energies and counters after some work, to go on from.
+fn account(work: &Work) -> (EnergyBalance, RunStats) {
+    let energy = EnergyBalance {
+        external: work.external_j,
+        contact: work.contact_j,
+        dissipated: work.dissipated_j,
+        stored: work.stored_j,
+        worst_residual: work.worst_defect_j,
+        scale: work.energy_scale_j,
+    };
+    let stats = RunStats {
+        steps: work.steps,
+        solver: SolveStats {
+            solves: work.contact_solves,
+            pivots: work.pivots,
+            factorisations: work.factorisations,
+            ..SolveStats::default()
+        },
+        worst_complementarity: work.worst_complementarity,
+        worst_kkt: work.worst_kkt_violation,
+        widened: work.widened_steps,
+        watched_back: work.steps_with_coast_flanks,
+        not_converged: work.not_converged,
+        time: Duration::try_from_secs_f64(work.time_s).unwrap_or_default(),
+    };
+    (energy, stats)
 }

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use anyhow::{Context, anyhow, bail};
-use lpm::{ContinuationOptions, Method, Model, Options, Response, Sampling, Spectrum, SteadyOptions, SweepOptions};
+use lpm::{ContinuationOptions, Method, Model, Options, Response, Sampling, Spectrum, SteadyOptions, Stop, SweepOptions};
 use rayon::prelude::*;
 
 use crate::RunObserver;
@@ -30,7 +30,8 @@ pub fn run(
     observer: &dyn RunObserver,
     times: &mut Times,
 ) -> anyhow::Result<Findings> {
-    let run = Run { case, states, observer, integration: integration(case) };
+    let asked = || observer.is_cancelled();
+    let run = Run { case, states, observer, integration: Options { stop: Stop::when(&asked), ..integration(case) } };
     let mut findings = Findings::default();
     let analysis = &case.inputs.analysis;
     if analysis.time.is_some() {
@@ -75,7 +76,7 @@ pub fn grid(from: f64, to: f64, step: f64) -> Vec<f64> {
     (0..=count).map(|i| from + i as f64 * step).collect()
 }
 
-fn integration(case: &LumpedPairCase) -> Options {
+fn integration(case: &LumpedPairCase) -> Options<'static> {
     let analysis = &case.inputs.analysis;
     let method = match analysis.method {
         schema::Method::Automatic => None,
@@ -91,11 +92,11 @@ struct Run<'a> {
     case: &'a LumpedPairCase,
     states: &'a [State],
     observer: &'a dyn RunObserver,
-    integration: Options,
+    integration: Options<'a>,
 }
 
 impl Run<'_> {
-    fn steady(&self) -> SteadyOptions {
+    fn steady(&self) -> SteadyOptions<'_> {
         let tolerance = (10.0 * self.case.inputs.analysis.tolerance).clamp(1e-12, 0.1);
         SteadyOptions { integration: self.integration, tolerance, ..SteadyOptions::default() }
     }
@@ -115,7 +116,7 @@ impl Run<'_> {
             .par_iter()
             .map(|job| {
                 if self.observer.is_cancelled() {
-                    bail!("cancelled");
+                    bail!("stopped; nothing was written");
                 }
                 let result = work(job)?;
                 self.observer.advanced(done.fetch_add(1, Ordering::Relaxed) + 1, jobs.len());
@@ -170,7 +171,8 @@ impl Run<'_> {
     fn branches(&self, request: &schema::Continuation) -> anyhow::Result<Vec<BranchResult>> {
         let states = if request.damaged { self.states } else { &self.states[..1] };
         let tolerance = self.case.inputs.analysis.tolerance;
-        let fine = Options { method: self.integration.method, ..Options::with_tolerance((0.1 * tolerance).max(1e-13)) };
+        let finer = Options::with_tolerance((0.1 * tolerance).max(1e-13)).step;
+        let fine = Options { step: finer, ..self.integration };
         let options = ContinuationOptions {
             from: request.from_hz,
             to: request.to_hz,

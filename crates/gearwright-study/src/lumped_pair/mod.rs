@@ -2,6 +2,7 @@
 
 mod analyses;
 mod states;
+mod supports;
 
 use std::time::Instant;
 
@@ -16,8 +17,8 @@ use super::RunObserver;
 /// Model errors; cancellation.
 pub fn compute(case: &LumpedPairCase, observer: &dyn RunObserver) -> anyhow::Result<Lumped> {
     let clock = Instant::now();
-    let states = states::build(case, observer)?;
+    let (states, treatment) = states::build(case, observer)?;
     let mut times = Times { curves: clock.elapsed().as_secs_f64(), ..Times::default() };
     let findings = analyses::run(case, &states, observer, &mut times)?;
-    Ok(Lumped { states, findings, times })
+    Ok(Lumped { states, treatment, findings, times })
 }

@@ -4,35 +4,35 @@ use anyhow::{Context, anyhow, bail};
 use fecm::statics::{PairModel, StaticsRequest};
 use lpm::{Excitation, GearPair, Model};
 
-use gearwright_results::lumped::State;
+use gearwright_results::lumped::{State, Treatment};
 
+use super::supports;
 use crate::{AsObserver, RunObserver};
 use gearwright_case::lumped_pair::curves::{Curves, Points};
 use gearwright_case::lumped_pair::resolve::{DamagedState, Damping, HEALTHY, Source};
 use gearwright_case::{LumpedPairCase, SpurPairCase};
 
-/// All states, the healthy one first.
+/// A state before its model is made.
+struct Drawn {
+    name: String,
+    curves: Curves,
+    damaged_cycles: Option<(usize, usize)>,
+}
+
+/// All states, the healthy one first, and how their supports are treated.
 ///
 /// # Errors
 /// Those of static analyses and models.
-pub fn build(case: &LumpedPairCase, observer: &dyn RunObserver) -> anyhow::Result<Vec<State>> {
+pub fn build(case: &LumpedPairCase, observer: &dyn RunObserver) -> anyhow::Result<(Vec<State>, Treatment)> {
     let healthy = healthy(case, observer)?;
     let mut pair: GearPair = case.pair;
     pair.mesh_damping = match case.damping {
         Damping::Absolute(damping) => damping,
         Damping::Ratio(ratio) => pair.damping_for_ratio(ratio, healthy.stiffness.mean()),
     };
-    let model = |curves: &Curves, name: &str| {
-        let excitation = Excitation::new(&curves.stiffness, &curves.error);
-        excitation
-            .and_then(|e| Model::new(&pair, &e, case.supports))
-            .with_context(|| format!("state \"{name}\" cannot be modelled"))
-    };
-    let mut states =
-        vec![State { name: HEALTHY.into(), model: model(&healthy, HEALTHY)?, curves: healthy, damaged_cycles: None }];
+    let mut drawn = vec![Drawn { name: HEALTHY.into(), curves: healthy, damaged_cycles: None }];
     for state in &case.damaged {
-        for (name, damaged) in damaged(case, state, &states[0].curves, observer)? {
-            let healthy = &states[0].curves;
+        for (name, damaged) in damaged(case, state, &drawn[0].curves, observer)? {
             let rotation = case.rotation.ok_or_else(|| anyhow!("damaged states need the number of teeth"))?;
             let first = state.first.unwrap_or_else(|| damaged.first.rem_euclid(rotation as i64) as usize);
             let until = first + damaged.stiffness.period();
@@ -42,14 +42,25 @@ pub fn build(case: &LumpedPairCase, observer: &dyn RunObserver) -> anyhow::Resul
                      set its mesh_cycle"
                 );
             }
-            let whole = healthy
-                .with_damage(rotation, first, &damaged)
-                .with_context(|| format!("the curves of state \"{name}\" do not fit the rotation"))?;
-            let model = model(&whole, &name)?;
-            states.push(State { model, name, curves: whole, damaged_cycles: Some((first, until)) });
+            let whole = drawn[0].curves.with_damage(rotation, first, &damaged);
+            let curves = whole.with_context(|| format!("the curves of state \"{name}\" do not fit the rotation"))?;
+            drawn.push(Drawn { name, curves, damaged_cycles: Some((first, until)) });
         }
     }
-    Ok(states)
+    let excitations = drawn.iter().map(|state| {
+        let excitation = Excitation::new(&state.curves.stiffness, &state.curves.error);
+        excitation.with_context(|| format!("state \"{}\" cannot be modelled", state.name))
+    });
+    let excitations = excitations.collect::<anyhow::Result<Vec<_>>>()?;
+    let treatment = supports::treatment(case, &pair, &excitations)?;
+    let state = |(drawn, excitation): (Drawn, &Excitation)| {
+        let Drawn { name, curves, damaged_cycles } = drawn;
+        let model = Model::new(&pair, excitation, treatment.supports);
+        let model = model.with_context(|| format!("state \"{name}\" cannot be modelled"))?;
+        Ok(State { name, curves, model, damaged_cycles })
+    };
+    let states = drawn.into_iter().zip(&excitations).map(state).collect::<anyhow::Result<_>>()?;
+    Ok((states, treatment))
 }
 
 /// Curves of the healthy pair.

@@ -1,18 +1,19 @@
 //! Mesh tables and reduced housings on disc, beside the results, found again by what they depend on.
 //!
-//! A file is named by a fingerprint of everything that went into it, the program itself included; it appears complete or not at all. One that
-//! cannot be read is as none. The folder may be deleted at any time.
+//! An entry is named by the hash of its key, and holds its checksum and the hash of the program that wrote it ([`gearwright_store::entry`]). Entries
+//! that are damaged or from another build are ignored and computed again. The folder may be deleted at any time.
 
-use std::fmt::Debug;
-use std::io::{BufReader, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
 
+use gearwright_store::file_system::{Disk, FileSystem as _};
+use gearwright_store::{Digest, Found, read_entry, write_entry};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 /// Name of the folder.
 pub const FOLDER: &str = ".gearwright-cache";
+/// File whose lock a writer holds.
+const LOCK: &str = "lock";
 
 /// A folder of kept results, or none.
 #[derive(Debug, Clone)]
@@ -34,56 +35,33 @@ impl Cache {
         Self { folder: Some(folder.to_path_buf()) }
     }
 
-    /// What was kept under a name and a key, or what `make` makes, which is kept.
+    /// The value kept under a name and a key; if there is none, the one `make` makes, which is kept.
     ///
     /// # Errors
-    /// What `make` says. A cache that cannot be written is not used.
+    /// Those of `make`. A cache that cannot be written is not used.
     pub fn get<T: Serialize + DeserializeOwned, E>(
         &self,
         name: &str,
-        key: &dyn Debug,
+        key: &impl Serialize,
         make: impl FnOnce() -> Result<T, E>,
     ) -> Result<T, E> {
-        let Some(folder) = &self.folder else { return make() };
-        let file = folder.join(format!("{name}-{:016x}.json", fingerprint(key)));
-        let kept = std::fs::File::open(&file).ok().and_then(|f| serde_json::from_reader(BufReader::new(f)).ok());
-        if let Some(kept) = kept {
+        let (Some(folder), Ok(key)) = (&self.folder, Digest::of_value(&(name, key))) else { return make() };
+        let file = folder.join(format!("{name}-{key}.entry"));
+        if let Found::Value(kept) = read_entry(&Disk, &file, key) {
             return Ok(kept);
         }
         let made = make()?;
         // nothing is lost where it cannot be kept
-        let _ = keep(folder, &file, &made);
+        let _ = keep(folder, &file, key, &made);
         Ok(made)
     }
 }
 
-fn keep(folder: &Path, file: &Path, content: &impl Serialize) -> anyhow::Result<()> {
+fn keep(folder: &Path, file: &Path, key: Digest, content: &impl Serialize) -> anyhow::Result<()> {
     std::fs::create_dir_all(folder)?;
-    let mut writer = BufWriter::new(tempfile::NamedTempFile::new_in(folder)?);
-    serde_json::to_writer(&mut writer, content)?;
-    writer.flush()?;
-    writer.into_inner().map_err(|error| error.into_error())?.persist(file)?;
+    let _lock = Disk.lock(&folder.join(LOCK), true)?;
+    write_entry(&Disk, file, key, content)?;
     Ok(())
-}
-
-/// FNV-1a of all that a result depends on: what is computed, and the program that computes it.
-fn fingerprint(key: &dyn Debug) -> u64 {
-    fnv(program(), format!("{key:?}").as_bytes())
-}
-
-/// Fingerprint of the running program; of its version where it cannot be read.
-fn program() -> u64 {
-    static PROGRAM: OnceLock<u64> = OnceLock::new();
-    *PROGRAM.get_or_init(|| {
-        let own = std::env::current_exe().and_then(std::fs::read);
-        fnv(FNV_BASIS, own.as_deref().unwrap_or(env!("CARGO_PKG_VERSION").as_bytes()))
-    })
-}
-
-const FNV_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
-
-fn fnv(basis: u64, bytes: &[u8]) -> u64 {
-    bytes.iter().fold(basis, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3))
 }
 
 #[cfg(test)]
@@ -101,9 +79,12 @@ mod tests {
         let again: Result<Vec<f64>, ()> = cache.get("table", &("a", 1.0), || Err(()));
         assert_eq!(again.unwrap(), values);
         assert!(cache.get::<Vec<f64>, ()>("table", &("a", 2.0), || Err(())).is_err());
-        // a broken file is as none
+        assert!(cache.get::<Vec<f64>, ()>("other", &("a", 1.0), || Err(())).is_err());
+        // one changed digit: read as valid JSON before there was a checksum
         for entry in std::fs::read_dir(scratch.path().join(FOLDER)).unwrap() {
-            std::fs::write(entry.unwrap().path(), "[0.1").unwrap();
+            let file = entry.unwrap().path();
+            let text = std::fs::read_to_string(&file).unwrap();
+            std::fs::write(&file, text.replace("0.3333", "0.3433")).unwrap();
         }
         assert!(cache.get::<Vec<f64>, ()>("table", &("a", 1.0), || Err(())).is_err());
         let off = Cache::beside(&scratch.path().join("elsewhere/results"), false);

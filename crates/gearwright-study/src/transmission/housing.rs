@@ -87,7 +87,7 @@ impl Kept {
 /// # Errors
 /// Finite elements that fail.
 pub fn reduced(plan: &HousingPlan, cache: &Cache, observer: &dyn RunObserver) -> anyhow::Result<ElasticBody> {
-    let kept = cache.get("housing", plan, || {
+    let kept = cache.get("housing", &format!("{plan:?}"), || {
         observer.stage("finite elements of the housing");
         let reduced = plan.solid.reduce(&plan.options).context("the housing cannot be reduced")?;
         anyhow::Ok(Kept::of(&reduced.body))

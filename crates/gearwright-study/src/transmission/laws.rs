@@ -54,7 +54,7 @@ fn bevel_law(
         tolerance: case.inputs.analysis.table_tolerance,
         ..TableOptions::up_to(factor * bevel_force(case, stage))
     };
-    let table: MeshTable = cache.get("bevel", &(&stage.pair, options), || {
+    let table: MeshTable = cache.get("bevel", &format!("{:?}", (&stage.pair, options)), || {
         observer.stage("contact of the bevel stage");
         virtual_table(&stage.pair, &options, &AsObserver(observer)).context("the bevel stage cannot be solved")
     })?;
@@ -146,7 +146,7 @@ impl<'a> Site<'a> {
     fn sound(&self, origin: f64) -> anyhow::Result<MeshTable> {
         self.stopped()?;
         let options = self.options(origin);
-        let key = (self.case.train.pair(self.site), &self.case.pairs[self.index()], options);
+        let key = format!("{:?}", (self.case.train.pair(self.site), &self.case.pairs[self.index()], options));
         self.cache.get("mesh", &key, || {
             self.observer.stage(&format!("contact of the {}", self.name()));
             let made = MeshTable::from_contact(self.model()?, &options, &AsObserver(self.observer));
@@ -159,7 +159,7 @@ impl<'a> Site<'a> {
         self.stopped()?;
         let options = self.options(origin);
         let tooth = DamagedTooth { member, pair: 0, damage: damage.to_vec() };
-        let key = (self.case.train.pair(self.site), &self.case.pairs[self.index()], options, &tooth);
+        let key = format!("{:?}", (self.case.train.pair(self.site), &self.case.pairs[self.index()], options, &tooth));
         self.cache.get("damage", &key, || {
             self.observer.stage(&format!("contact of the {}, {label}", self.name()));
             let (_, sound) = self.table(origin).context("the table of sound teeth is missing")?;

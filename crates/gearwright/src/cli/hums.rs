@@ -3,12 +3,14 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
+use anyhow::Context;
 use clap::Args;
 use hums::io::is_recording;
 use toml::{Table, Value};
 
 use gearwright_case::{self as case, Case, CaseFaults};
+
+use super::exit::refused;
 
 /// Name that faults of flags are told under.
 const COMMAND_LINE: &str = "command line";
@@ -89,8 +91,8 @@ pub struct Flags {
     /// Results folder; default: out/<name of the case or recording>.
     #[arg(long)]
     pub out: Option<PathBuf>,
-    /// Threads; default: one per core. Results do not depend on it.
-    #[arg(long)]
+    /// Threads, 1 to 1024; default: one per core. Results do not depend on it.
+    #[arg(long, value_parser = super::threads)]
     pub threads: Option<usize>,
 }
 
@@ -102,9 +104,9 @@ impl Flags {
     pub fn load(&self) -> anyhow::Result<(Case, PathBuf)> {
         let Some(signal) = &self.signal else {
             let Some(file) = self.case.clone() else {
-                bail!(
-                    "give a case file, or --signal FILE with --teeth, and --tach or --speed-hz; see gearwright hums --help"
-                );
+                return Err(refused(
+                    "give a case file, or --signal FILE with --teeth, and --tach or --speed-hz; see gearwright hums --help",
+                ));
             };
             return Ok((Case::Recording(Box::new(case::load_recording(&file)?)), file));
         };
@@ -118,7 +120,9 @@ impl Flags {
         let mut case = Table::new();
         case.insert("kind".into(), "recording".into());
         put(&mut case, "title", self.title.as_deref());
-        let Some(file) = signal.to_str() else { bail!("{}: the name is not UTF-8; rename the file", signal.display()) };
+        let Some(file) = signal.to_str() else {
+            return Err(refused(format!("{}: the name is not UTF-8; rename the file", signal.display())));
+        };
         let mut section = Table::new();
         put(&mut section, "file", Some(file));
         put(&mut section, "channels", (!self.channel.is_empty()).then(|| self.channel.join(",")));
@@ -138,7 +142,9 @@ impl Flags {
             let (above, below) = ratio.split_once('/').unwrap_or((ratio, "1"));
             let number = |part: &str| part.trim().parse::<f64>().ok();
             let (Some(above), Some(below)) = (number(above), number(below)) else {
-                bail!("{COMMAND_LINE}: --gear-ratio = {ratio}: must be a number, or two with a slash, e.g. 27/81");
+                return Err(refused(format!(
+                    "{COMMAND_LINE}: --gear-ratio = {ratio}: must be a number, or two with a slash, e.g. 27/81"
+                )));
             };
             put(&mut section, "gear_ratio", Some(above));
             put(&mut section, "gear_ratio_divisor", Some(below));

@@ -2,19 +2,27 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
+use anyhow::Context;
 use clap::{Parser, Subcommand};
 
 use crate::run;
 use gearwright_case::kind::{self, CaseKind};
 use gearwright_case::{self as case, Case, Notes, reference, template};
 
+use exit::{Exit, Stopped, refused};
+
+pub mod exit;
 mod hums;
+pub mod output;
 mod progress;
+mod verify;
+
+/// Threads a run may start.
+const MAX_THREADS: usize = 1024;
 
 /// Spur gear contact and dynamics from a TOML case file.
 #[derive(Debug, Parser)]
-#[command(name = "gearwright", version, about, max_term_width = 100)]
+#[command(name = "gearwright", version, about, max_term_width = 100, after_help = exit::HELP)]
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -29,9 +37,14 @@ enum Command {
         /// Results folder; default: out/<name of the case file>.
         #[arg(long)]
         out: Option<PathBuf>,
-        /// Threads; default: one per core. Results do not depend on it.
-        #[arg(long)]
+        /// Threads, 1 to 1024; default: one per core. Results do not depend on it.
+        #[arg(long, value_parser = threads)]
         threads: Option<usize>,
+    },
+    /// Compare a results folder with its manifest: changed and missing files.
+    Verify {
+        /// Results folder.
+        folder: PathBuf,
     },
     /// Condition indicators of recorded vibration: averages, indicators, verdicts, trends.
     Hums(Box<hums::Flags>),
@@ -59,17 +72,35 @@ enum Command {
     },
 }
 
-/// Runs the command line; returns what goes to standard output.
+/// What a command ends with.
+#[derive(Debug)]
+pub struct Done {
+    /// Text for standard output.
+    pub text: String,
+    /// How the program ends.
+    pub exit: Exit,
+}
+
+/// A number of threads on the command line.
+fn threads(text: &str) -> Result<usize, String> {
+    let allowed = || format!("must be a whole number from 1 to {MAX_THREADS}");
+    text.parse().ok().filter(|count| (1..=MAX_THREADS).contains(count)).ok_or_else(allowed)
+}
+
+/// Runs the command line.
 ///
 /// # Errors
-/// What the user has to be told.
-pub fn execute(cli: &Cli) -> anyhow::Result<String> {
-    match &cli.command {
-        Command::Run { case, out, threads } => run_case(&case::load(case)?, case, out.as_deref(), *threads),
+/// The message for the user; [`Exit::of`] gives its exit code.
+pub fn execute(cli: &Cli) -> anyhow::Result<Done> {
+    let text = match &cli.command {
+        Command::Run { case, out, threads } => {
+            return run_case(&case::load(case)?, case, out.as_deref(), *threads);
+        }
         Command::Hums(flags) => {
             let (loaded, file) = flags.load()?;
-            run_case(&loaded, &file, flags.out.as_deref(), flags.threads)
+            return run_case(&loaded, &file, flags.out.as_deref(), flags.threads);
         }
+        Command::Verify { folder } => return verify::verify(folder),
         Command::Check { case: file } => {
             let case = case::load(file)?;
             Ok(format!("{}{}{}: valid{}\n", about(&case)?, case.notes(), file.display(), with_warnings(case.notes())))
@@ -77,37 +108,43 @@ pub fn execute(cli: &Cli) -> anyhow::Result<String> {
         Command::Init { kind, file } => init(kind, file.as_deref()),
         Command::Explain { key } => explain(key.as_deref()),
         Command::Schema { kind } => Ok(format!("{}\n", serde_json::to_string_pretty(&(known_kind(kind)?.schema)())?)),
-    }
+    };
+    Ok(Done { text: text?, exit: Exit::Usable })
 }
 
 /// Runs a case; `file` names its results.
-fn run_case(loaded: &Case, file: &Path, out: Option<&Path>, threads: Option<usize>) -> anyhow::Result<String> {
+fn run_case(loaded: &Case, file: &Path, out: Option<&Path>, threads: Option<usize>) -> anyhow::Result<Done> {
     let target = match out {
         Some(folder) => folder.to_path_buf(),
         None => Path::new("out").join(file.file_stem().unwrap_or_default()),
     };
     let mut pool = rayon::ThreadPoolBuilder::new();
     if let Some(count) = threads {
-        if count == 0 {
-            bail!("--threads must be at least 1");
-        }
         pool = pool.num_threads(count);
     }
     let pool = pool.build().context("threads cannot be started")?;
     let Notes { warnings, assumptions } = loaded.notes().clone();
-    eprint!("{}", Notes { warnings, ..Notes::default() });
+    let warnings = Notes { warnings, ..Notes::default() }.to_string();
+    if !warnings.is_empty() {
+        output::note(warnings.trim_end());
+    }
     let observer = progress::Terminal::new();
     let finished = pool.install(|| run::run(loaded, &target, &observer));
     observer.finish();
-    let finished = finished?;
-    if finished.unusable > 0 {
-        eprintln!(
-            "warning: {} positions have no usable answer; the status columns of the tables say why",
-            finished.unusable
-        );
+    // whatever a stopped run reports, it was stopped
+    let finished = finished.map_err(|error| match observer.is_stopped() {
+        true => Stopped(format!("{error:#}")).into(),
+        false => error,
+    })?;
+    let run::Unusable { count, total, what } = finished.unusable;
+    if count > 0 {
+        output::note(&format!(
+            "warning: {count} of {total} {what} have no usable answer; the status columns of the tables say why"
+        ));
     }
+    let exit = if count > 0 { Exit::Unusable } else { Exit::Usable };
     let assumed = Notes { assumptions, ..Notes::default() };
-    Ok(format!("{}{assumed}  results in {}\n", finished.screen, finished.folder.display()))
+    Ok(Done { text: format!("{}{assumed}  results in {}\n", finished.screen, finished.folder.display()), exit })
 }
 
 fn with_warnings(notes: &Notes) -> String {
@@ -123,7 +160,7 @@ fn init(kind: &str, file: Option<&Path>) -> anyhow::Result<String> {
     let default = PathBuf::from(format!("{}.toml", kind.name));
     let file = file.unwrap_or(&default);
     if file.exists() {
-        bail!("{} exists; choose another name", file.display());
+        return Err(refused(format!("{} exists; choose another name", file.display())));
     }
     std::fs::write(file, template::commented(kind)).with_context(|| format!("{} cannot be written", file.display()))?;
     Ok(format!("wrote {}; run it with: gearwright run {}\n", file.display(), file.display()))
@@ -172,7 +209,7 @@ fn about(case: &Case) -> anyhow::Result<String> {
 }
 
 fn known_kind(name: &str) -> anyhow::Result<&'static CaseKind> {
-    kind::find(name).with_context(|| format!("there is no kind of case \"{name}\"; known: {}", kind::names()))
+    kind::find(name).ok_or_else(|| refused(format!("there is no kind of case \"{name}\"; known: {}", kind::names())))
 }
 
 fn explain(key: Option<&str>) -> anyhow::Result<String> {
@@ -191,7 +228,8 @@ fn explain(key: Option<&str>) -> anyhow::Result<String> {
         let likeness =
             |k: &reference::KeyReference| strsim::jaro_winkler(key, k.key.rsplit('.').next().unwrap_or_default());
         let near = all.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
-        bail!("there is no key \"{key}\"; the nearest is \"{}\"", near.map_or("", |k| &k.key));
+        let near = near.map_or("", |k| &k.key);
+        return Err(refused(format!("there is no key \"{key}\"; the nearest is \"{near}\"")));
     }
     let mut text = String::new();
     for entry in found {

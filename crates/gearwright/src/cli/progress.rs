@@ -31,6 +31,11 @@ impl Terminal {
         Self { bar: Mutex::new(None), interactive: std::io::stderr().is_terminal(), stopped }
     }
 
+    /// Whether a signal has asked the run to stop.
+    pub fn is_stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed)
+    }
+
     /// Clears the bar.
     pub fn finish(&self) {
         if let Some(bar) = self.bar.lock().ok().and_then(|mut bar| bar.take()) {
@@ -43,7 +48,7 @@ impl RunObserver for Terminal {
     fn stage(&self, name: &str) {
         self.finish();
         if !self.interactive {
-            eprintln!("{name} ...");
+            super::output::note(&format!("{name} ..."));
             return;
         }
         let style = ProgressStyle::with_template("{spinner} {msg} {wide_bar} {pos}/{len} {eta}");

@@ -7,11 +7,11 @@ use anyhow::anyhow;
 use gearwright_case::DynamicsCase;
 use gearwright_plot::dynamics as figures;
 use gearwright_results::dynamics::{Speed, summary, tables};
+use gearwright_store::ResultsFolder;
 use gearwright_study::RunObserver;
 use gearwright_study::dynamics::{compute, film};
 
-use super::Finished;
-use crate::folder::ResultsFolder;
+use super::{Finished, Unusable};
 
 /// Runs a dynamics case into `target`.
 ///
@@ -57,9 +57,15 @@ pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> an
     let whole = summary::summary(case, results.vibration, speeds, blows, times);
     std::fs::write(folder.file("summary.json"), serde_json::to_string_pretty(&whole)?)?;
     let screen = summary::screen(case, &whole, results.steps.as_deref());
+    let all = || speeds.iter().flat_map(|speed| &speed.responses);
+    let unusable = Unusable {
+        count: all().map(|response| response.work.not_converged).sum(),
+        total: all().map(|response| response.work.steps).sum(),
+        what: "steps",
+    };
     let folder = folder.publish()?;
     computed.finish();
-    Ok(Finished { folder, screen, unusable: 0 })
+    Ok(Finished { folder, screen, unusable })
 }
 
 fn write_tables(folder: &ResultsFolder, prefix: &str, speed: &Speed) -> anyhow::Result<()> {

@@ -7,11 +7,11 @@ use anyhow::anyhow;
 use gearwright_case::LumpedPairCase;
 use gearwright_plot::{Chart, lumped as figures};
 use gearwright_results::lumped::{Findings, Lumped, State, summary, tables};
+use gearwright_store::ResultsFolder;
 use gearwright_study::RunObserver;
 use gearwright_study::lumped_pair::compute;
 
-use super::Finished;
-use crate::folder::ResultsFolder;
+use super::{Finished, Unusable};
 
 /// Runs a lumped-pair case into `target`.
 ///
@@ -19,7 +19,7 @@ use crate::folder::ResultsFolder;
 /// Model errors, and anything the file system says. Nothing is left at `target` then.
 pub fn run(case: &LumpedPairCase, target: &Path, observer: &dyn RunObserver) -> anyhow::Result<Finished> {
     let folder = ResultsFolder::create(target)?;
-    let Lumped { states, findings, mut times } = compute(case, observer)?;
+    let Lumped { states, treatment, findings, mut times } = compute(case, observer)?;
     observer.stage("writing results");
     let clock = Instant::now();
     write_tables(&folder, &states, &findings)?;
@@ -27,10 +27,10 @@ pub fn run(case: &LumpedPairCase, target: &Path, observer: &dyn RunObserver) -> 
         draw(case, &folder, &states, &findings)?;
     }
     times.output = clock.elapsed().as_secs_f64();
-    let whole = summary::summary(case, &states, &findings, times)?;
+    let whole = summary::summary(case, (&states, &treatment), &findings, times)?;
     std::fs::write(folder.file("summary.json"), serde_json::to_string_pretty(&whole)?)?;
     let screen = summary::screen(case, &whole);
-    Ok(Finished { folder: folder.publish()?, screen, unusable: 0 })
+    Ok(Finished { folder: folder.publish()?, screen, unusable: Unusable::default() })
 }
 
 fn write_tables(folder: &ResultsFolder, states: &[State], findings: &Findings) -> anyhow::Result<()> {

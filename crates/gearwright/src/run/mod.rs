@@ -18,8 +18,19 @@ pub struct Finished {
     pub folder: PathBuf,
     /// The one-screen summary.
     pub screen: String,
-    /// Positions without a usable answer, of the series and the map together.
-    pub unusable: usize,
+    /// Answers that cannot be used.
+    pub unusable: Unusable,
+}
+
+/// How many answers of a run cannot be used; its tables mark them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Unusable {
+    /// Answers that cannot be used.
+    pub count: usize,
+    /// All answers.
+    pub total: usize,
+    /// What is counted: positions, steps, recordings.
+    pub what: &'static str,
 }
 
 /// Runs a case into `target`.

@@ -7,11 +7,11 @@ use anyhow::anyhow;
 use gearwright_case::RecordingCase;
 use gearwright_plot::recording as figures;
 use gearwright_results::recording::{detection_tables, summary, tables};
+use gearwright_store::ResultsFolder;
 use gearwright_study::RunObserver;
 use gearwright_study::recording::{RecordingError, compute};
 
-use super::Finished;
-use crate::folder::ResultsFolder;
+use super::{Finished, Unusable};
 
 /// Runs a recording case into `target`.
 ///
@@ -51,5 +51,10 @@ pub fn run(case: &RecordingCase, target: &Path, observer: &dyn RunObserver) -> a
         return Err(RecordingError::Cancelled.into());
     }
     let screen = summary::screen(case, &outcome);
-    Ok(Finished { folder: folder.publish()?, screen, unusable: 0 })
+    let unusable = Unusable {
+        count: outcome.entries.iter().filter(|entry| entry.measured.is_err()).count(),
+        total: outcome.entries.len(),
+        what: "recordings",
+    };
+    Ok(Finished { folder: folder.publish()?, screen, unusable })
 }

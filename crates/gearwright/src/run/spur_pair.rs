@@ -9,11 +9,11 @@ use gearwright_case::SpurPairCase;
 use gearwright_plot::{Chart, statics as figures};
 use gearwright_results::statics::damage::{self, Effect};
 use gearwright_results::statics::{Statics, summary, tables};
+use gearwright_store::ResultsFolder;
 use gearwright_study::spur_pair::{Computed, compute};
 use gearwright_study::{RunObserver, grids};
 
-use super::Finished;
-use crate::folder::ResultsFolder;
+use super::{Finished, Unusable};
 
 /// Runs a spur-pair case into `target`.
 ///
@@ -50,7 +50,9 @@ pub fn run(case: &SpurPairCase, target: &Path, observer: &dyn RunObserver) -> an
     };
     std::fs::write(folder.file("summary.json"), serde_json::to_string_pretty(&whole)?)?;
     let screen = summary::screen(case, &extrema, &effects, &results.stats, &times);
-    Ok(Finished { folder: folder.publish()?, screen, unusable: results.unusable() })
+    let (count, total) = results.unusable();
+    let unusable = Unusable { count, total, what: "positions" };
+    Ok(Finished { folder: folder.publish()?, screen, unusable })
 }
 
 /// Tables, comparison plots and grids of the damaged pairs.

@@ -7,11 +7,11 @@ use anyhow::{anyhow, bail};
 use gearwright_case::TransmissionCase;
 use gearwright_plot::transmission as figures;
 use gearwright_results::transmission::{Findings, Sensor, State, summary, tables};
+use gearwright_store::ResultsFolder;
 use gearwright_study::RunObserver;
 use gearwright_study::transmission::{cache::Cache, compute};
 
-use super::Finished;
-use crate::folder::ResultsFolder;
+use super::{Finished, Unusable};
 
 /// Runs a transmission case into `target`.
 ///
@@ -36,7 +36,7 @@ pub fn run(case: &TransmissionCase, target: &Path, observer: &dyn RunObserver) -
         bail!("stopped; tables made so far are kept for the next run");
     }
     let screen = summary::screen(case, &findings, &times);
-    Ok(Finished { folder: folder.publish()?, screen, unusable: 0 })
+    Ok(Finished { folder: folder.publish()?, screen, unusable: Unusable::default() })
 }
 
 fn write(case: &TransmissionCase, folder: &ResultsFolder, findings: &Findings) -> anyhow::Result<()> {

@@ -17,11 +17,13 @@
 
 pub(crate) mod events;
 pub(crate) mod steppers;
+mod stop;
 
 use crate::error::{LpmError, check};
 use crate::excitation::Segment;
 use crate::system::{ContactPhase, System, Vector};
 use steppers::Step;
+pub use stop::Stop;
 
 /// Integration method, see the table in the module `steppers` for orders and sources.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -82,23 +84,37 @@ pub enum StepControl {
 
 /// Integration options.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
+pub struct Options<'a> {
     /// `None`: [`Method::Magnus`] for one coordinate, [`Method::Esdirk`] for three.
     pub method: Option<Method>,
     /// Step choice.
     pub step: StepControl,
     /// Contact events allowed in one mesh cycle (or one natural period, where longer) before the run is given up.
     pub max_events_per_cycle: usize,
+    /// Steps, rejected ones included, that one integration may take, at least 1. An integration that must take more by its own limit on the
+    /// step is refused before its first step.
+    pub max_steps: u64,
+    /// Asked every [`STOP_STEPS`] steps.
+    pub stop: Stop<'a>,
 }
 
-impl Default for Options {
-    /// Adaptive steps at a tolerance of 1e-8.
+/// Steps between two questions whether to stop.
+pub const STOP_STEPS: u64 = 256;
+
+impl Default for Options<'_> {
+    /// Adaptive steps at a tolerance of 1e-8, at most 5e7 of them (about 10 s with one coordinate).
     fn default() -> Self {
-        Self { method: None, step: StepControl::Adaptive { tolerance: 1e-8 }, max_events_per_cycle: 1000 }
+        Self {
+            method: None,
+            step: StepControl::Adaptive { tolerance: 1e-8 },
+            max_events_per_cycle: 1000,
+            max_steps: 50_000_000,
+            stop: Stop::default(),
+        }
     }
 }
 
-impl Options {
+impl Options<'_> {
     /// Default options at another tolerance.
     pub fn with_tolerance(tolerance: f64) -> Self {
         Self { step: StepControl::Adaptive { tolerance }, ..Self::default() }
@@ -115,6 +131,7 @@ impl Options {
             }
         };
         check(self.max_events_per_cycle >= 1, "events per cycle", self.max_events_per_cycle as f64, "-", "at least 1")?;
+        check(self.max_steps >= 1, "steps", self.max_steps as f64, "-", "at least 1")?;
         Ok(())
     }
 
@@ -210,7 +227,7 @@ impl<const N: usize> Cursor<N> {
 pub(crate) struct Runner<'a, const N: usize> {
     pub system: &'a System<N>,
     pub method: Method,
-    pub options: Options,
+    pub options: Options<'a>,
     /// Mesh frequency (Hz).
     pub frequency: f64,
     /// Hold the tangent vectors to the tolerance too (the state alone may be at rest).
@@ -218,7 +235,7 @@ pub(crate) struct Runner<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Runner<'a, N> {
-    pub fn new(system: &'a System<N>, options: &Options, frequency: f64) -> Result<Self, LpmError> {
+    pub fn new(system: &'a System<N>, options: &Options<'a>, frequency: f64) -> Result<Self, LpmError> {
         options.validate()?;
         check((1e-6..=1e9).contains(&frequency), "mesh frequency", frequency, "Hz", "between 1e-6 and 1e9")?;
         Ok(Self { system, method: options.method_for::<N>()?, options: *options, frequency, control_tangents: false })
@@ -233,6 +250,11 @@ impl<'a, const N: usize> Runner<'a, N> {
     ) -> Result<(), LpmError> {
         let excitation = self.system.excitation();
         let period = excitation.period() as f64;
+        let needed = cycles / self.longest_step();
+        if needed > self.options.max_steps as f64 {
+            let (limit, frequency) = (self.options.max_steps, self.frequency);
+            return Err(LpmError::TooManySteps { cycles, frequency, needed, limit });
+        }
         let mut left = cycles;
         let mut index = excitation.segment_at(cursor.tau);
         let resolution = 1e-12;
@@ -267,13 +289,14 @@ impl<'a, const N: usize> Runner<'a, N> {
         observe: &mut impl FnMut(&Record<N>),
     ) -> Result<(), LpmError> {
         let (s, f) = (self.system, self.frequency);
-        let cap = s.omega.recip() * std::f64::consts::TAU / 8.0 * f;
+        let cap = self.longest_step();
         let event_span = 1f64.max(8.0 * cap);
         let cap = cap.min(segment.max_step);
         let mut stuck = 0usize;
         let mut window = (cursor.base + cursor.tau, 0usize);
         while cursor.tau < end {
             let tau = cursor.tau;
+            self.go_on(cursor)?;
             let phase = match cursor.phase {
                 Some(p) => p,
                 None => s.phase(segment, tau, f, &cursor.z),
@@ -297,6 +320,7 @@ impl<'a, const N: usize> Runner<'a, N> {
                     break (step, after);
                 }
                 cursor.stats.rejected += 1;
+                self.go_on(cursor)?;
                 let shrink = if size.is_finite() { 0.9 * size.powf(-1.0 / self.method.estimate_power()) } else { 0.1 };
                 h = dtau * shrink.clamp(0.1, 0.9);
                 if h < 1e-13 * (1.0 + segment.end) {
@@ -349,6 +373,23 @@ impl<'a, const N: usize> Runner<'a, N> {
             cursor.z = record.after;
             cursor.tau = new_tau;
             observe(&record);
+        }
+        Ok(())
+    }
+
+    /// Longest step (mesh cycles): an eighth of the mesh mode's period.
+    fn longest_step(&self) -> f64 {
+        self.system.omega.recip() * std::f64::consts::TAU / 8.0 * self.frequency
+    }
+
+    /// Ends an integration that has taken all its steps, or is asked to stop.
+    fn go_on(&self, cursor: &Cursor<N>) -> Result<(), LpmError> {
+        let taken = cursor.stats.steps + cursor.stats.rejected;
+        if taken >= self.options.max_steps {
+            return Err(LpmError::StepLimit { phase: cursor.base + cursor.tau, limit: self.options.max_steps });
+        }
+        if taken % STOP_STEPS == 0 && self.options.stop.is_requested() {
+            return Err(LpmError::Stopped { phase: cursor.base + cursor.tau });
         }
         Ok(())
     }
