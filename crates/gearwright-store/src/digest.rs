@@ -113,10 +113,7 @@ mod tests {
     /// FIPS 180-4, example of the empty message and of "abc" (NIST, "SHA256" examples with intermediate values).
     #[test]
     fn analytic_published_examples() {
-        assert_eq!(
-            Digest::of(b"").to_string(),
-            "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855"
-        );
+        assert_eq!(Digest::of(b"").to_string(), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
         let abc = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
         assert_eq!(Digest::of(b"abc").to_string(), abc);
         assert_eq!(Digest::of_reader(&b"abc"[..]).unwrap(), (3, abc.parse().unwrap()));

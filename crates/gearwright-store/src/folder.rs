@@ -75,9 +75,7 @@ impl Places {
         match self.kind(&self.target)? {
             None => Ok(Standing::Nothing),
             Some(Kind::Folder) if Manifest::read(&*self.disk, &self.target)?.is_some() => Ok(Standing::Ours),
-            Some(Kind::Folder)
-                if self.disk.list(&self.target).map_err(refused(&self.target, "listed"))?.is_empty() =>
-            {
+            Some(Kind::Folder) if self.disk.list(&self.target).map_err(refused(&self.target, "listed"))?.is_empty() => {
                 Ok(Standing::Ours)
             }
             Some(_) => Err(StoreError::Foreign { path: self.target.clone() }),
@@ -178,10 +176,7 @@ impl Places {
 }
 
 /// The path with `.kept`, `.kept-2`, ... behind it that is free.
-fn free_name(
-    path: &Path,
-    is_free: impl Fn(&Path) -> Result<bool, StoreError>,
-) -> Result<PathBuf, StoreError> {
+fn free_name(path: &Path, is_free: impl Fn(&Path) -> Result<bool, StoreError>) -> Result<PathBuf, StoreError> {
     let mut number = 1;
     loop {
         let mut name = path.file_name().unwrap_or_default().to_owned();

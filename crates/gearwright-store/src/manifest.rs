@@ -133,9 +133,7 @@ impl Manifest {
             let expected = name.as_deref().and_then(|name| missing.remove(name));
             let shown = name.unwrap_or_else(|| file.to_string_lossy().into_owned());
             match expected {
-                Some(digest)
-                    if kind == Kind::File && disk.digest(&file).map_err(refused(&file, "read"))? == digest =>
-                {
+                Some(digest) if kind == Kind::File && disk.digest(&file).map_err(refused(&file, "read"))? == digest => {
                     found.intact += 1;
                 }
                 Some(_) => found.changed.push(shown),

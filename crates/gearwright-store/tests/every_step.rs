@@ -11,7 +11,8 @@ use gearwright_store::file_system::{Disk, FileSystem};
 use gearwright_store::folder::verify_on;
 use gearwright_store::{Digest, Found, Ignored, ResultsFolder, StoreError, read_entry, verify, write_entry};
 
-const OLD: [(&str, &str); 4] = [("a.csv", "old a"), ("b.csv", "old b"), ("sub/c.csv", "old c"), ("gone.csv", "old gone")];
+const OLD: [(&str, &str); 4] =
+    [("a.csv", "old a"), ("b.csv", "old b"), ("sub/c.csv", "old c"), ("gone.csv", "old gone")];
 const NEW: [(&str, &str); 5] =
     [("a.csv", "new a"), ("b.csv", "new b"), ("d.csv", "new d"), ("e", "new e"), ("sub/c.csv", "new c")];
 /// Put into the old results: free names, names the new results take, a result that was edited.

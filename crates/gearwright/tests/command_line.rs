@@ -144,7 +144,10 @@ fn exit_codes_are_a_contract() {
     // 3 unusable: a load that needs wider contact grids than the teeth are long
     scratch.write("overloaded.toml", &SMALL.replace("torque_n_m = 200.0", "torque_n_m = 2e6"));
     let (overloaded, said) = code(&scratch, &["run", "overloaded.toml"]);
-    assert!(overloaded == Some(3) && said.contains("10 of 10 positions have no usable answer"), "{overloaded:?} {said}");
+    assert!(
+        overloaded == Some(3) && said.contains("10 of 10 positions have no usable answer"),
+        "{overloaded:?} {said}"
+    );
     assert!(scratch.path().join("out/overloaded/series.csv").exists());
     // the help holds the contract
     let help = text(&gearwright(scratch.path(), &["--help"]).stdout);

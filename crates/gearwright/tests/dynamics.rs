@@ -240,14 +240,14 @@ fn a_checkpoint_that_does_not_fit_is_not_taken_up() {
     let scratch = Scratch::with_pair();
     let content = format!("{}mesh_cycles = 2\n[output]\nplots = false\n[checkpoint]\nevery_steps = 10\n", healthy());
     scratch.write("case.toml", &content);
-    let case = gearwright::case::load(&scratch.path().join("case.toml")).unwrap();
+    let case = gearwright_case::load(&scratch.path().join("case.toml")).unwrap();
     let target = scratch.path().join("pieces");
     let checkpoint = scratch.path().join("pieces.checkpoint");
     let stop = || {
         assert!(gearwright::run::run(&case, &target, &StopAfter(AtomicUsize::new(25))).is_err());
         std::fs::read_to_string(&checkpoint).unwrap()
     };
-    let start = |case: &gearwright::case::Case| {
+    let start = |case: &gearwright_case::Case| {
         let stages = Stages::default();
         gearwright::run::run(case, &target, &stages).unwrap();
         let heard = |words: &str| stages.hold(words);
@@ -263,7 +263,7 @@ fn a_checkpoint_that_does_not_fit_is_not_taken_up() {
     // another case
     stop();
     scratch.write("case.toml", &content.replace("speed_rpm = 3000.0", "speed_rpm = 2900.0"));
-    let changed = gearwright::case::load(&scratch.path().join("case.toml")).unwrap();
+    let changed = gearwright_case::load(&scratch.path().join("case.toml")).unwrap();
     assert_eq!(start(&changed), [true, false, true, false]);
     // another build of the program: this test's is not that of the command
     stop();

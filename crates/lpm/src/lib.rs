@@ -98,10 +98,10 @@ mod spectrum;
 mod sweep;
 mod system;
 
-pub use elimination::{elimination_error, elimination_frequency_error};
 pub use branch::{Branch, BranchEnd, BranchPoint, ContinuationOptions, TurningPoint};
 pub use curve::{Curve, CurveRange, Interpolation};
 pub use damage::{DamageResponse, SteadyResponse};
+pub use elimination::{elimination_error, elimination_frequency_error};
 pub use error::LpmError;
 pub use excitation::Excitation;
 pub use floquet::{Multiplier, Stability, stability};

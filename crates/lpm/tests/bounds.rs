@@ -61,11 +61,11 @@ fn extreme_slow_and_heavily_damped_pairs_answer_or_are_refused() -> Result<(), L
 fn analytic_heavily_damped_pair_creeps() -> Result<(), LpmError> {
     let (k, c) = (600e6, 1e9);
     let pair = GearPair { mesh_damping: c, ..GearPair::table_3_2(Input::Prescribed) };
-    let model =
-        Model::new(&pair, &Excitation::new(&Curve::constant(k)?, &Curve::constant(15e-6)?)?, Supports::Rigid)?;
+    let model = Model::new(&pair, &Excitation::new(&Curve::constant(k)?, &Curve::constant(15e-6)?)?, Supports::Rigid)?;
     let mut start = model.equilibrium(0.0);
     start.position[0] += 1e-6;
-    let response = model.simulate(900.0, &start, 900, &Sampling { per_cycle: 4, energy: false }, &Options::default())?;
+    let response =
+        model.simulate(900.0, &start, 900, &Sampling { per_cycle: 4, energy: false }, &Options::default())?;
     for (cycle, x) in response.mesh_cycle.iter().zip(&response.transmission_error) {
         let expected = 15e-6 + 1e-6 * (-k / c * cycle / 900.0).exp();
         assert!((x - expected).abs() < 1e-9 * 1e-6 + 1e-13, "cycle {cycle}: {x} against {expected}");

@@ -160,7 +160,11 @@ fn fill_from_geometry(inputs: &mut LumpedPair, statics: &SpurPairCase) {
     inputs.pair.gear_torque_n_m.get_or_insert(statics.inputs.load.torque_n_m);
 }
 
-fn gear_pair(inputs: &mut LumpedPair, document: &Node, faults: &mut Vec<Fault>) -> (GearPair, Damping, Option<lpm::Supports>) {
+fn gear_pair(
+    inputs: &mut LumpedPair,
+    document: &Node,
+    faults: &mut Vec<Fault>,
+) -> (GearPair, Damping, Option<lpm::Supports>) {
     let pair = &mut inputs.pair;
     let known = pair.pinion.support_stiffness_n_per_m.is_some() || pair.gear.support_stiffness_n_per_m.is_some();
     if !known {

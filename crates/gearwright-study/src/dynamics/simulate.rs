@@ -7,7 +7,8 @@
 use std::time::Duration;
 
 use fecm::dynamics::{
-    DynamicsRequest, DynamicsRun, DynamicsState, EnergyBalance, InitialState, Motion, PairDynamics, RunStats, StepRecord,
+    DynamicsRequest, DynamicsRun, DynamicsState, EnergyBalance, InitialState, Motion, PairDynamics, RunStats,
+    StepRecord,
 };
 use fecm::lcp::SolveStats;
 use fecm::statics::Observer;

@@ -4,7 +4,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use anyhow::{Context, anyhow, bail};
-use lpm::{ContinuationOptions, Method, Model, Options, Response, Sampling, Spectrum, SteadyOptions, Stop, SweepOptions};
+use lpm::{
+    ContinuationOptions, Method, Model, Options, Response, Sampling, Spectrum, SteadyOptions, Stop, SweepOptions,
+};
 use rayon::prelude::*;
 
 use crate::RunObserver;
