@@ -119,6 +119,9 @@ fn check_plain(root: &Node, value: &Json, schema: &Json, at: &str, faults: &mut 
         faults.push(root.fault(at, format!("must be {}", expected(schema))));
         return;
     }
+    if value.as_str().is_some_and(|text| text.contains(char::is_control)) {
+        faults.push(root.fault(at, "must not hold control characters, line breaks included".to_owned()));
+    }
     if let Some(number) = value.as_f64() {
         let low = schema.get("minimum").and_then(Json::as_f64);
         let high = schema.get("maximum").and_then(Json::as_f64);

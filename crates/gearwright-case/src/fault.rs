@@ -36,10 +36,32 @@ impl CaseFaults {
     }
 }
 
+/// Characters of a file or key, of a value and of a message that are shown.
+const SHOWN: [usize; 3] = [200, 120, 4000];
+/// Faults that are shown.
+const FAULTS: usize = 100;
+
+/// Text for a message: control characters escaped, lines kept, what is too long cut off with its length.
+fn shown(text: &str, most: usize) -> String {
+    let mut clean = String::new();
+    for c in text.chars().take(most) {
+        match c {
+            '\n' => clean.push(c),
+            c if c.is_control() => clean.extend(c.escape_default()),
+            c => clean.push(c),
+        }
+    }
+    let all = text.chars().count();
+    if all > most {
+        clean.push_str(&format!(".. ({} more characters)", all - most));
+    }
+    clean
+}
+
 impl fmt::Display for CaseFaults {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let file = self.file.display();
-        for (index, fault) in self.faults.iter().enumerate() {
+        let file = shown(&self.file.to_string_lossy(), SHOWN[0]);
+        for (index, fault) in self.faults.iter().take(FAULTS).enumerate() {
             if index > 0 {
                 writeln!(f)?;
             }
@@ -49,6 +71,9 @@ impl fmt::Display for CaseFaults {
             }
             write!(f, "{fault}")?;
         }
+        if self.faults.len() > FAULTS {
+            write!(f, "\n{file}: {} more faults", self.faults.len() - FAULTS)?;
+        }
         Ok(())
     }
 }
@@ -57,13 +82,13 @@ impl fmt::Display for CaseFaults {
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.key.is_empty() {
-            write!(f, "{}", self.key)?;
+            write!(f, "{}", shown(&self.key, SHOWN[0]))?;
             if let Some(value) = &self.value {
-                write!(f, " = {value}")?;
+                write!(f, " = {}", shown(value, SHOWN[1]))?;
             }
             write!(f, ": ")?;
         }
-        write!(f, "{}", self.message)
+        write!(f, "{}", shown(&self.message, SHOWN[2]))
     }
 }
 

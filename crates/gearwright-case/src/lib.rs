@@ -6,6 +6,7 @@
 //! | module | holds |
 //! |---|---|
 //! | [`kind`] | the list of kinds |
+//! | [`input`] | files that are read: regular ones of limited size |
 //! | [`document`], [`check`], [`mod@reference`], [`template`] | lines of keys, checks against the schema, documentation of keys, `init` files |
 //! | [`spur_pair`], [`lumped_pair`], [`dynamics`], [`transmission`], [`recording`] | one kind each: `schema` (as written), `resolve` (SI) |
 //!
@@ -28,6 +29,7 @@ pub mod document;
 pub mod dynamics;
 pub mod fault;
 mod geometry;
+pub mod input;
 pub mod kind;
 pub mod lumped_pair;
 pub mod notes;
@@ -129,7 +131,7 @@ fn wrong_kind(file: &Path, found: &str, wanted: &str) -> CaseFaults {
 }
 
 fn read(file: &Path) -> Result<String, CaseFaults> {
-    std::fs::read_to_string(file).map_err(|error| {
+    input::read_text(file, input::MAX_CASE).map_err(|error| {
         let message = match error.kind() {
             std::io::ErrorKind::NotFound => {
                 "there is no such file; `gearwright init spur-pair FILE` writes one to start from".to_owned()

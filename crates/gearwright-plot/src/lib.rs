@@ -184,7 +184,9 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
 
 /// Writes a scene as `name.svg` and `name.png`.
 fn save(mut scene: Scene, folder: &dyn Fn(&str) -> std::path::PathBuf, name: &str) -> Result<(), String> {
-    write(&folder(&format!("{name}.svg")), SvgBackend.render_scene(&scene).as_bytes())?;
+    // XML has no place for control characters, which names in files may hold
+    let svg = SvgBackend.render_scene(&scene).replace(|c: char| c.is_control() && !matches!(c, '\n' | '\r' | '\t'), "");
+    write(&folder(&format!("{name}.svg")), svg.as_bytes())?;
     // the raster backend begins its dashes anew at every point of a line
     dashes::cut(&mut scene);
     let png = PngBackend::new().with_scale(PNG_SCALE).render_scene(&scene)?;

@@ -11,7 +11,7 @@ fn main() -> ExitCode {
     match ended {
         Ok(exit) => exit.into(),
         Err(error) => {
-            output::note(&format!("error: {error:#}"));
+            output::note(&format!("error: {}", output::reasons(&error)));
             Exit::of(&error).into()
         }
     }

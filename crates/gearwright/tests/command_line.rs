@@ -213,6 +213,56 @@ fn standard_output_may_be_closed_or_full() {
     assert_eq!(status.code(), Some(2));
 }
 
+#[cfg(unix)]
+#[test]
+fn devices_pipes_and_files_without_end_are_refused_at_once() {
+    let scratch = Scratch::new();
+    assert!(std::process::Command::new("mkfifo").arg(scratch.path().join("pipe")).status().unwrap().success());
+    let large = std::fs::File::create(scratch.path().join("large")).unwrap();
+    // sparse: it takes no room
+    large.set_len(10 << 30).unwrap();
+    let lumped = |file: &str| {
+        format!("kind = \"lumped-pair\"\n[pair]\ninput = \"prescribed\"\n[excitation]\ntable.file = \"{file}\"\n")
+    };
+    let dynamics =
+        |file: &str| format!("kind = \"dynamics\"\n[pair]\nspur_pair = \"{file}\"\n[run]\nspeed_rpm = 1.0\n");
+    let deviation = |file: &str| {
+        let key = format!("facewidth_mm = 16.0\nmodification.deviation_table = \"{file}\"\n\n[gear]");
+        SMALL.replacen("facewidth_mm = 16.0\n\n[gear]", &key, 1)
+    };
+    for (file, reason) in [("/dev/zero", "device"), ("pipe", "pipe"), ("large", "bytes"), (".", "folder")] {
+        for content in [lumped(file), dynamics(file), deviation(file)] {
+            scratch.write("case.toml", &content);
+            let (code, said) = code(&scratch, &["check", "case.toml"]);
+            assert!(code == Some(2) && said.contains(reason), "{file}: {code:?} {said}");
+        }
+        let (code, said) = code(&scratch, &["check", file]);
+        assert!(code == Some(2) && said.contains(reason), "{file}: {code:?} {said}");
+    }
+}
+
+#[test]
+fn messages_are_short_and_do_not_steer_the_terminal() {
+    let scratch = Scratch::new();
+    let said = |content: &str| {
+        scratch.write("case.toml", content);
+        let (code, said) = code(&scratch, &["check", "case.toml"]);
+        assert_eq!(code, Some(2), "{said}");
+        assert!(!said.contains('\u{1b}') && said.len() < 20_000, "{} bytes", said.len());
+        said
+    };
+    let long = "x".repeat(1 << 20);
+    assert!(said(&SMALL.replace("25", &format!("\"{long}\""))).contains("more characters"));
+    assert!(said(&SMALL.replace("\"small\"", "\"\\u001b[2Jgone\"")).contains("control characters"));
+    let keys: String = (0..100_000).map(|k| format!("key_{k} = 1\n")).collect();
+    assert!(said(&format!("{SMALL}{keys}")).contains("more faults"));
+    said(&SMALL.replace("[mesh]", &format!("[{long}]")));
+    // each reason once
+    scratch.write("file", "x");
+    let (_, said) = code(&scratch, &["run", "absent.toml", "--out", "file/results"]);
+    assert_eq!(said.matches("no such file").count(), 1, "{said}");
+}
+
 #[test]
 fn threads_do_not_change_the_table() {
     let scratch = Scratch::new();

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::curves::Points;
 use super::schema::Table;
+use crate::input;
 
 /// Reads the points of a table.
 ///
@@ -12,8 +13,8 @@ use super::schema::Table;
 pub fn read(table: &Table, folder: &Path) -> Result<Points, String> {
     let path = folder.join(&table.file);
     let unreadable = |e: csv::Error| format!("{} cannot be read: {e}", path.display());
-    let mut reader =
-        csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_path(&path).map_err(unreadable)?;
+    let bytes = input::read(&path, input::MAX_TABLE).map_err(|e| unreadable(e.into()))?;
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(&bytes[..]);
     let header = reader.headers().map_err(unreadable)?.clone();
     let column = |name: &str| {
         header.iter().position(|h| h == name).ok_or_else(|| {

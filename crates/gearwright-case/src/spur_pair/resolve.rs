@@ -17,6 +17,7 @@ use super::schema::{
 use crate::document::Node;
 use crate::fault::Fault;
 use crate::geometry::geometry_fault;
+use crate::input;
 use crate::notes::Notes;
 
 const MM: f64 = 1e-3;
@@ -241,8 +242,9 @@ fn modification(
 
 /// Reads a deviation table: face positions (mm) in the first row, roll angles (degrees) in the first column, removed material (um).
 pub(super) fn read_deviation(file: &Path, base: f64) -> Result<MeasuredDeviation, String> {
-    let open = csv::ReaderBuilder::new().has_headers(false).comment(Some(b'#')).trim(csv::Trim::All).from_path(file);
-    let mut reader = open.map_err(|e| format!("the table cannot be read: {e}"))?;
+    let bytes = input::read(file, input::MAX_TABLE).map_err(|e| format!("the table cannot be read: {e}"))?;
+    let mut format = csv::ReaderBuilder::new();
+    let mut reader = format.has_headers(false).comment(Some(b'#')).trim(csv::Trim::All).from_reader(&bytes[..]);
     let mut table = MeasuredDeviation::default();
     for (row, record) in reader.records().enumerate() {
         let record = record.map_err(|e| format!("the table cannot be read: {e}"))?;

@@ -14,6 +14,7 @@ use super::schema::Transmission;
 use super::stage_schema::{Housing, MeshUnits};
 use crate::document::Node;
 use crate::fault::Fault;
+use crate::input;
 
 const MM: f64 = 1e-3;
 
@@ -94,7 +95,8 @@ fn own_mesh(
             fault(&format!("housing.{key}"), message.into());
         }
     }
-    let text = std::fs::read_to_string(file).map_err(|e| fault("housing.mesh", format!("cannot be read: {e}"))).ok()?;
+    let text = input::read_text(file, input::MAX_MESH);
+    let text = text.map_err(|e| fault("housing.mesh", format!("cannot be read: {e}"))).ok()?;
     let units = match written.mesh_units {
         MeshUnits::Si => Units::SI,
         MeshUnits::Millimetre => Units::MILLIMETRE,

@@ -7,6 +7,7 @@ use std::path::Path;
 use hums::threshold::{Rate, Roc, detection_curve};
 
 use super::error::RecordingError;
+use gearwright_case::input;
 use gearwright_results::recording::{Detected, FALSE_ALARMS, Limit, Limits, Measured, Row, Severity};
 
 /// Detection by every indicator that both sets have, in the order of the tables.
@@ -70,12 +71,13 @@ fn over_severity(
 /// # Errors
 /// [`RecordingError::Missing`], [`RecordingError::Severities`] with the line at fault.
 pub fn severities(path: &Path) -> Result<BTreeMap<String, Severity>, RecordingError> {
-    if !path.is_file() {
+    if !path.exists() {
         return Err(RecordingError::Missing { path: path.into(), key: "detection.severities (--severities)" });
     }
     let fault = |line, reason| RecordingError::Severities { path: path.into(), line, reason };
     let read = |e: csv::Error| fault(e.position().map_or(1, csv::Position::line), e.to_string());
-    let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(read)?;
+    let bytes = input::read(path, input::MAX_TABLE).map_err(|e| fault(1, e.to_string()))?;
+    let mut table = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(&bytes[..]);
     let header = table.headers().map_err(read)?.clone();
     let named = |name: &str| header.iter().position(|heading| heading.eq_ignore_ascii_case(name));
     let column = |name: &str| named(name).ok_or_else(|| fault(1, format!("there is no column \"{name}\"")));

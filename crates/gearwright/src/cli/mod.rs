@@ -133,7 +133,7 @@ fn run_case(loaded: &Case, file: &Path, out: Option<&Path>, threads: Option<usiz
     observer.finish();
     // whatever a stopped run reports, it was stopped
     let finished = finished.map_err(|error| match observer.is_stopped() {
-        true => Stopped(format!("{error:#}")).into(),
+        true => Stopped(output::reasons(&error)).into(),
         false => error,
     })?;
     let run::Unusable { count, total, what } = finished.unusable;
