@@ -34,41 +34,55 @@ pub enum Value {
 /// # Errors
 /// One fault with the line of the syntax error.
 pub fn parse(text: &str) -> Result<Node, Fault> {
+    let source = Source::new(text);
     let syntax = |message: &str, at: Option<usize>| Fault {
-        line: at.map(|offset| line_of(text, offset)),
+        line: at.map(|offset| source.line(offset)),
         key: String::new(),
         value: None,
         message: format!("not valid TOML: {message}"),
     };
     let table = DeTable::parse(text).map_err(|e| syntax(e.message(), e.span().map(|s| s.start)))?;
-    Ok(Node { line: 1, text: String::new(), value: Value::Table(convert_table(text, table.get_ref())) })
+    Ok(Node { line: 1, text: String::new(), value: Value::Table(convert_table(&source, table.get_ref())) })
 }
 
-fn line_of(text: &str, offset: usize) -> usize {
-    text[..offset.min(text.len())].matches('\n').count() + 1
+/// Text with the places of its line breaks: the line of an offset without counting from the start.
+struct Source<'a> {
+    text: &'a str,
+    breaks: Vec<usize>,
 }
 
-fn convert_table(text: &str, table: &DeTable<'_>) -> BTreeMap<String, Node> {
+impl<'a> Source<'a> {
+    fn new(text: &'a str) -> Self {
+        Self { text, breaks: text.match_indices('\n').map(|(at, _)| at).collect() }
+    }
+
+    /// Line of an offset, from 1.
+    fn line(&self, offset: usize) -> usize {
+        self.breaks.partition_point(|at| *at < offset) + 1
+    }
+}
+
+fn convert_table(source: &Source<'_>, table: &DeTable<'_>) -> BTreeMap<String, Node> {
     table
         .iter()
         .map(|(key, value)| {
-            let line = line_of(text, key.span().start);
-            (key.get_ref().to_string(), convert(text, line, value))
+            let line = source.line(key.span().start);
+            (key.get_ref().to_string(), convert(source, line, value))
         })
         .collect()
 }
 
-fn convert(text: &str, line: usize, value: &Spanned<DeValue<'_>>) -> Node {
+fn convert(source: &Source<'_>, line: usize, value: &Spanned<DeValue<'_>>) -> Node {
     let span = value.span();
-    let source = text.get(span).unwrap_or_default().trim().to_owned();
+    let text = source.text.get(span).unwrap_or_default().trim().to_owned();
     let value = match value.get_ref() {
-        DeValue::Table(table) => Value::Table(convert_table(text, table)),
+        DeValue::Table(table) => Value::Table(convert_table(source, table)),
         DeValue::Array(items) if is_list(items) => {
-            Value::List(items.iter().map(|item| convert(text, line_of(text, item.span().start), item)).collect())
+            Value::List(items.iter().map(|item| convert(source, source.line(item.span().start), item)).collect())
         }
         other => Value::Plain(plain(other)),
     };
-    Node { line, text: source, value }
+    Node { line, text, value }
 }
 
 /// Whether an array is a repeated section.

@@ -23,11 +23,8 @@ pub(super) fn notes(case: &LumpedPairCase, document: &Node) -> Notes {
     }
     for (name, member) in [("pinion", Member::Pinion), ("gear", Member::Gear)] {
         let section = format!("pair.{name}");
-        if pair.supports != Some(Supports::Integrated) {
-            idle(&section, &["mass_kg"], "only integrated supports move (pair.supports = \"integrated\")");
-        }
         if pair.supports == Some(Supports::Rigid) {
-            idle(&section, &["support_damping_n_s_per_m"], "the supports are rigid (pair.supports)");
+            idle(&section, &["mass_kg", "support_damping_n_s_per_m"], "the supports are rigid (pair.supports)");
         }
         let is_rotation = inputs.excitation.damaged_gear == member
             && (!inputs.state.is_empty() || time.is_some_and(|time| time.mesh_cycles.is_none()));

@@ -102,13 +102,13 @@ pub struct Options<'a> {
 pub const STOP_STEPS: u64 = 256;
 
 impl Default for Options<'_> {
-    /// Adaptive steps at a tolerance of 1e-8, at most 5e7 of them (about 10 s with one coordinate).
+    /// Adaptive steps at a tolerance of 1e-8, at most 1e7 of them (some seconds).
     fn default() -> Self {
         Self {
             method: None,
             step: StepControl::Adaptive { tolerance: 1e-8 },
             max_events_per_cycle: 1000,
-            max_steps: 50_000_000,
+            max_steps: 10_000_000,
             stop: Stop::default(),
         }
     }
