@@ -6,7 +6,7 @@
 //! | [`fillet`] | fillets: rack trochoid, shaper trochoid, circular arc |
 //! | [`outline`] | half a tooth from mid-space to the middle of its tip, exact and without gaps in slope |
 //! | [`modification`] | relief, crown, end relief, slope, measured deviation |
-//! | [`gear`] | one gear: specification, checks, derived sizes |
+//! | [`gear`] | one gear: specification, checks, derived sizes; [`Gear::inertia`] |
 //! | [`pair`] | two gears in mesh: working angle, contact ratio, backlash, interference, landmarks, kinematics |
 //! | [`bevel`] | spiral bevel gears: cones, virtual spur gears, line of action |
 //! | [`planetary_train`] | sun, planets and ring: assembly, speeds, mesh phases, which tooth meets which when |
@@ -46,6 +46,7 @@ pub mod damage;
 pub mod error;
 pub mod fillet;
 pub mod gear;
+mod inertia;
 pub mod involute;
 pub mod modification;
 pub mod outline;
@@ -60,6 +61,7 @@ pub use damage::{
 pub use error::{GeometryError, GeometryErrors, TrainError};
 pub use fillet::{Fillet, FilletSpec};
 pub use gear::{FlankSide, Gear, GearKind, GearSpec, ToothThickness};
+pub use inertia::GearInertia;
 pub use modification::{EndRelief, FlankModification, MeasuredDeviation, ProfileRelief, ReliefShape};
 pub use outline::{HalfToothOutline, OutlineSegment};
 pub use pair::{Finding, GearPair, Landmark, Landmarks, Member};

@@ -84,3 +84,4 @@ pub mod threshold;
 pub mod tsa;
 
 pub use error::{HumsError, Result};
+pub use indicator::basic::{crest_factor, fm4, kurtosis, m6a, m8a, rms};

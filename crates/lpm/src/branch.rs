@@ -49,6 +49,9 @@ impl Default for ContinuationOptions<'_> {
 
 impl ContinuationOptions<'_> {
     /// Checks ranges.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] for the first number outside its range.
     pub fn validate(&self) -> Result<(), LpmError> {
         self.integration.validate()?;
         check(self.from > 0.0, "least mesh frequency", self.from, "Hz", "positive")?;

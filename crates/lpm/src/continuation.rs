@@ -36,6 +36,10 @@ impl Model {
     /// Follows the periodic solution found near `guess` (state at phase 0) at `mesh_frequency` (Hz) over the frequency range.
     ///
     /// Fails where no periodic solution is found at the start.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] for an option outside its range, or where no periodic solution is found near `guess`; [`LpmError::Singular`] where
+    /// the branch has no tangent at its start; errors of the integration, as [`Model::simulate`].
     pub fn continuation(
         &self,
         mesh_frequency: f64,

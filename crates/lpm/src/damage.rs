@@ -22,6 +22,7 @@ use crate::model::{Model, State};
 use crate::periodic::{Steady, SteadyOptions};
 use crate::response::{Response, Sampling};
 use crate::spectrum::{Spectrum, damage_induced};
+use gear_numerics::number::lcm;
 
 /// A steady response over whole mesh cycles from phase 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,6 +69,9 @@ fn range(x: &[f64]) -> f64 {
 
 impl Model {
     /// Waits for the steady state from `start` and samples `cycles` mesh cycles of it.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`]; options outside their ranges.
     pub fn steady_response(
         &self,
         mesh_frequency: f64,
@@ -86,6 +90,9 @@ impl Model {
     ///
     /// The damaged curves must have a period that the healthy period divides. Starting the damaged pair on the healthy orbit
     /// keeps both on the same branch where several exist.
+    ///
+    /// # Errors
+    /// [`LpmError::Period`] where the periods do not fit; as [`Model::steady_response`].
     pub fn damage_response(
         &self,
         damaged: &Model,
@@ -123,12 +130,4 @@ impl Model {
         let spectrum = Spectrum::of(&difference, cycles as f64 / mesh_frequency)?;
         Ok(DamageResponse { healthy, damaged: damaged_response, difference, static_difference, spectrum })
     }
-}
-
-fn lcm(a: usize, b: usize) -> usize {
-    let (mut x, mut y) = (a, b);
-    while y != 0 {
-        (x, y) = (y, x % y);
-    }
-    a / x.max(1) * b
 }

@@ -49,6 +49,9 @@ pub(crate) struct Point {
 
 impl Excitation {
     /// From local mesh stiffness (N/m, positive everywhere) and static transmission error (m).
+    ///
+    /// # Errors
+    /// [`LpmError::StiffnessNotPositive`]; [`LpmError::Period`] for a common period of more than 100,000 mesh cycles.
     pub fn new(mesh_stiffness: &Curve, transmission_error: &Curve) -> Result<Self, LpmError> {
         let (a, b) = (mesh_stiffness.period(), transmission_error.period());
         let period = lcm(a, b);
@@ -101,6 +104,9 @@ impl Excitation {
     }
 
     /// The excitation held still at phase `tau`, as in an impulse test at standstill.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] for a phase that is not finite.
     pub fn frozen(&self, tau: f64) -> Result<Self, LpmError> {
         check(true, "phase", tau, "cycles", "finite")?;
         Self::new(&Curve::constant(self.stiffness.value(tau))?, &Curve::constant(self.error.value(tau))?)

@@ -61,6 +61,10 @@ pub fn stability(multipliers: &[Multiplier]) -> Stability {
 impl Model {
     /// Multipliers of the pair *in permanent contact* (no contact loss, so the load does not matter) at
     /// `mesh_frequency` (Hz) over one period of the excitation: the parametric stability of small vibrations.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] for a frequency or option outside its range; [`LpmError::Singular`] where the period map has no eigenvalues;
+    /// errors of the integration, as [`Model::simulate`].
     pub fn parametric_multipliers(&self, mesh_frequency: f64, options: &Options) -> Result<Vec<Multiplier>, LpmError> {
         // Same stiffness, no load, no transmission error, nothing to leave: the zero solution stays in contact.
         let mut pair: GearPair = *self.pair();

@@ -38,6 +38,9 @@ impl Model {
     ///
     /// `None` where fewer than two maxima stand out (critical damping). Where the teeth separate, which
     /// `response.separations` tells, the reading depends on the amplitude.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] for numbers outside their ranges; errors of the integration, as [`Model::simulate`].
     pub fn impulse_test(
         &self,
         tau: f64,
@@ -96,6 +99,9 @@ fn maxima(r: &Response, level: f64) -> Vec<(f64, f64)> {
 }
 
 /// Mesh average of a quantity `one` at one pair and `two` at two pairs in contact, by contact ratio between 1 and 2 (D4.3).
+///
+/// # Errors
+/// [`LpmError::OutOfRange`] for a contact ratio outside 1 to 2, or numbers that are not finite.
 pub fn mesh_average(one: f64, two: f64, contact_ratio: f64) -> Result<f64, LpmError> {
     check((1.0..=2.0).contains(&contact_ratio), "contact ratio", contact_ratio, "-", "between 1 and 2")?;
     Ok((contact_ratio - 1.0) * two + (2.0 - contact_ratio) * one)

@@ -78,6 +78,18 @@
 //! # Ok::<(), lpm::LpmError>(())
 //! ```
 
+#![cfg_attr(
+    not(test),
+    warn(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::print_stdout,
+        clippy::print_stderr,
+        clippy::missing_errors_doc
+    )
+)]
+
 pub mod analytic;
 mod branch;
 mod continuation;

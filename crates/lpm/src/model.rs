@@ -174,6 +174,9 @@ impl GearPair {
     }
 
     /// Checks every number against its range.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] for the first number outside its range.
     pub fn validate(&self) -> Result<(), LpmError> {
         for g in [&self.pinion, &self.gear] {
             check(g.base_radius > 0.0, "base radius", g.base_radius, "m", "positive")?;
@@ -228,6 +231,9 @@ pub(crate) use with_system;
 
 impl Model {
     /// Joins pair and excitation. Fails on numbers out of range and where backlash is smaller than the drive-side deflection.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`]; [`LpmError::Jammed`] where backlash is smaller than the deflection of the drive side.
     pub fn new(pair: &GearPair, excitation: &Excitation, supports: Supports) -> Result<Self, LpmError> {
         pair.validate()?;
         let kind = match supports {
@@ -282,6 +288,9 @@ impl Model {
     }
 
     /// The same model with another excitation (a damaged pair beside its healthy twin).
+    ///
+    /// # Errors
+    /// [`LpmError::Jammed`] where backlash is smaller than the deflection of the drive side.
     pub fn with_excitation(&self, excitation: &Excitation) -> Result<Self, LpmError> {
         Self::new(&self.pair, excitation, self.supports)
     }

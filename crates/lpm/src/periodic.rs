@@ -45,6 +45,9 @@ impl Default for ShootingOptions<'_> {
 
 impl ShootingOptions<'_> {
     /// Checks ranges.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] for the first number outside its range.
     pub fn validate(&self) -> Result<(), LpmError> {
         self.integration.validate()?;
         let t = self.tolerance;
@@ -123,6 +126,9 @@ impl Default for SteadyOptions<'_> {
 
 impl SteadyOptions<'_> {
     /// Checks ranges.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] for the first number outside its range.
     pub fn validate(&self) -> Result<(), LpmError> {
         self.integration.validate()?;
         let t = self.tolerance;
@@ -149,6 +155,9 @@ pub struct Steady {
 
 impl Model {
     /// Integrates from `start` at phase 0 until the motion repeats.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`]. A motion that does not repeat is not an error: see [`Steady`].
     pub fn steady_state(
         &self,
         mesh_frequency: f64,
@@ -160,6 +169,10 @@ impl Model {
     }
 
     /// Finds the periodic solution near `guess` (state at phase 0) by shooting.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`]; [`LpmError::Singular`] where the period map has no multipliers. Iterations that do not converge, and singular
+    /// Newton matrices, are a status of the [`Orbit`].
     pub fn shoot(&self, mesh_frequency: f64, guess: &State, options: &ShootingOptions) -> Result<Orbit, LpmError> {
         options.validate()?;
         with_system!(self, s => shoot(s, mesh_frequency, s.import(guess)?, options))

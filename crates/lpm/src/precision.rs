@@ -108,6 +108,9 @@ fn run(model: &Model, start: &State, method: Method, tolerance: f64) -> Result<R
 /// Runs every method at every tolerance (1e-12 to 0.1) on every problem, each run repeated for `seconds` (0: once) to time it.
 ///
 /// Newmark's method at tight tolerances takes very many steps; runs of it below 1e-9 are left out.
+///
+/// # Errors
+/// [`LpmError::OutOfRange`] for a tolerance outside its range; errors of the integration, as [`Model::simulate`].
 pub fn work_precision(tolerances: &[f64], seconds: f64) -> Result<Vec<WorkPrecision>, LpmError> {
     check(seconds >= 0.0, "time per run", seconds, "s", "zero or positive")?;
     for &t in tolerances {

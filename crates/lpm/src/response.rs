@@ -111,6 +111,10 @@ pub struct Response {
 
 impl Model {
     /// Integrates `cycles` whole mesh cycles at `mesh_frequency` (Hz) from `start` at phase 0 of the excitation.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] for numbers outside their ranges; [`LpmError::Unsuited`] for a method that cannot integrate the model;
+    /// [`LpmError::StepUnderflow`], [`LpmError::Unbounded`] or [`LpmError::TooManyEvents`] where the integration ends early.
     pub fn simulate(
         &self,
         mesh_frequency: f64,
@@ -324,6 +328,9 @@ impl Response {
     }
 
     /// Amplitude spectrum of the transmission error.
+    ///
+    /// # Errors
+    /// As [`Spectrum::of`].
     pub fn spectrum(&self) -> Result<Spectrum, LpmError> {
         Spectrum::of(&self.transmission_error, self.duration())
     }

@@ -24,6 +24,9 @@ pub struct Spectrum {
 
 impl Spectrum {
     /// Spectrum of equally spaced samples that cover whole periods; `duration` (s) is that of the whole signal.
+    ///
+    /// # Errors
+    /// [`LpmError::Length`] for fewer than 2 samples; [`LpmError::OutOfRange`] for a duration that is not positive.
     pub fn of(samples: &[f64], duration: f64) -> Result<Self, LpmError> {
         check(duration > 0.0, "duration", duration, "s", "positive")?;
         let n = samples.len();
@@ -78,6 +81,9 @@ impl Spectrum {
 }
 
 /// Damaged minus healthy, sample by sample. The healthy signal may cover a shorter period that divides the damaged one; it is repeated.
+///
+/// # Errors
+/// [`LpmError::Length`] where the healthy period does not divide the damaged one.
 pub fn damage_induced(damaged: &[f64], healthy: &[f64]) -> Result<Vec<f64>, LpmError> {
     if healthy.is_empty() || !damaged.len().is_multiple_of(healthy.len()) {
         return Err(LpmError::Length {

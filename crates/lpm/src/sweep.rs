@@ -80,11 +80,31 @@ pub struct SweepPoint {
 
 impl Model {
     /// Steady states at `mesh_frequencies` (Hz) in the order given, the first from static equilibrium, each further one from the last.
+    ///
+    /// ```
+    /// use lpm::{Curve, Excitation, GearPair, Input, Model, Supports, SweepOptions, frequencies};
+    ///
+    /// let pair = GearPair::table_3_2(Input::Prescribed);
+    /// // two pairs of teeth in contact over 0.64 of the cycle; error of the mesh under the mean force
+    /// let stiffness = Curve::rectangular(533e6, 806e6, 0.18, 0.64)?;
+    /// let force = pair.mean_force();
+    /// let error = Curve::rectangular(force / 533e6, force / 806e6, 0.18, 0.64)?;
+    /// let model = Model::new(&pair, &Excitation::new(&stiffness, &error)?, Supports::Eliminated)?;
+    /// let curve = model.sweep(&frequencies(500.0, 1000.0, 6), &SweepOptions::default())?;
+    /// assert!(curve.iter().all(|point| point.measure.dynamic_factor > 1.0 && point.measure.separated_fraction == 0.0));
+    /// # Ok::<(), lpm::LpmError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`LpmError::Length`] for an empty list; as [`Model::steady_state`].
     pub fn sweep(&self, mesh_frequencies: &[f64], options: &SweepOptions) -> Result<Vec<SweepPoint>, LpmError> {
         self.sweep_from(&self.equilibrium(0.0), mesh_frequencies, options)
     }
 
     /// As [`Model::sweep`], the first from `start` (state at phase 0).
+    ///
+    /// # Errors
+    /// As [`Model::sweep`].
     pub fn sweep_from(
         &self,
         start: &State,

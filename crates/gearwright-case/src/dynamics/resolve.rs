@@ -11,7 +11,6 @@ use super::schema::{self, Dynamics, Input, Rotor, Solver, Start};
 use crate::SpurPairCase;
 use crate::document::Node;
 use crate::fault::Fault;
-use crate::lumped_pair::disc::mass_and_inertia;
 use crate::notes::Notes;
 use crate::spur_pair::damage::Severity;
 use crate::spur_pair::schema::Values;
@@ -195,9 +194,9 @@ fn fill_defaults(inputs: &mut Dynamics, statics: &SpurPairCase, severities: &[(u
     let density = statics.inputs.material.density_kg_per_m3;
     let gears = [statics.pair.pinion(), statics.pair.wheel()];
     for (rotor, gear) in [&mut inputs.pinion, &mut inputs.gear].into_iter().zip(gears) {
-        let (mass, inertia) = mass_and_inertia(gear, density);
-        let mass = *rotor.mass_kg.get_or_insert(mass);
-        let inertia = *rotor.inertia_kg_m2.get_or_insert(inertia);
+        let solid = gear.inertia(density);
+        let mass = *rotor.mass_kg.get_or_insert(solid.mass);
+        let inertia = *rotor.inertia_kg_m2.get_or_insert(solid.polar);
         rotor.transverse_inertia_kg_m2.get_or_insert(0.5 * inertia + mass * gear.facewidth().powi(2) / 12.0);
     }
     inputs.pair.torque_n_m.get_or_insert(statics.inputs.load.torque_n_m);

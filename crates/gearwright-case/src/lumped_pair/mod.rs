@@ -1,7 +1,6 @@
 //! Kind `lumped-pair`: dynamics of a gear pair with lumped parameters and contact loss.
 
 pub mod curves;
-pub mod disc;
 mod notes;
 pub mod resolve;
 pub mod schema;

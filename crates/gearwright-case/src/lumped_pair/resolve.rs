@@ -5,7 +5,6 @@ use std::path::Path;
 use lpm::{Excitation, GearPair, Interpolation};
 
 use super::curves::Curves;
-use super::disc::mass_and_inertia;
 use super::notes::notes;
 use super::schema::{self, Disc, Input, LumpedPair, Member, Separation, Supports, Table};
 use super::table;
@@ -151,11 +150,11 @@ fn fill_from_geometry(inputs: &mut LumpedPair, statics: &SpurPairCase) {
     let density = statics.inputs.material.density_kg_per_m3;
     let gears = [statics.pair.pinion(), statics.pair.wheel()];
     for (disc, gear) in [&mut inputs.pair.pinion, &mut inputs.pair.gear].into_iter().zip(gears) {
-        let (mass, inertia) = mass_and_inertia(gear, density);
+        let solid = gear.inertia(density);
         disc.teeth.get_or_insert(gear.teeth());
         disc.base_radius_mm.get_or_insert(gear.base_radius() / MM);
-        disc.mass_kg.get_or_insert(mass);
-        disc.inertia_kg_m2.get_or_insert(inertia);
+        disc.mass_kg.get_or_insert(solid.mass);
+        disc.inertia_kg_m2.get_or_insert(solid.polar);
     }
     inputs.pair.gear_torque_n_m.get_or_insert(statics.inputs.load.torque_n_m);
 }

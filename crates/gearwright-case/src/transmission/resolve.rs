@@ -16,7 +16,6 @@ use crate::document::Node;
 use crate::dynamics::schema;
 use crate::fault::Fault;
 use crate::geometry::geometry_fault;
-use crate::lumped_pair::disc::mass_and_inertia;
 use crate::notes::Notes;
 use crate::spur_pair::notes::{pitch_error_faults, plane_faults};
 use crate::spur_pair::resolve::{contact_options, face_model, fill_defaults, member_options, spec};
@@ -355,8 +354,8 @@ fn bodies(inputs: &mut Transmission, train: &PlanetaryTrain) -> Bodies {
     let density = inputs.material.density_kg_per_m3;
     let spec = train.spec();
     let of_gear = |gear: &Gear| {
-        let (mass, polar) = mass_and_inertia(gear, density);
-        (mass, polar, gear.facewidth())
+        let inertia = gear.inertia(density);
+        (inertia.mass, inertia.polar, gear.facewidth())
     };
     let radius = spec.centre_distance + 0.5 * spec.planet.rim_radius();
     let mass = density * std::f64::consts::PI * radius * radius * spec.planet.facewidth();

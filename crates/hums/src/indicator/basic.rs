@@ -86,13 +86,28 @@ pub fn skewness(signal: &[f64]) -> Result<f64> {
     Moments::of(signal)?.standardized(3)
 }
 
-/// Kurtosis, dimensionless; 3 for Gaussian noise, 1.5 for a sine. FM4 is the kurtosis of the
-/// difference signal.
+/// Kurtosis, dimensionless; 3 for Gaussian noise, 1.5 for a sine. That of a difference signal is [`fm4`].
 ///
 /// # Errors
 /// [`HumsError::Undefined`] for a constant signal; empty signal or non-finite sample.
 pub fn kurtosis(signal: &[f64]) -> Result<f64> {
     Moments::of(signal)?.standardized(4)
+}
+
+/// FM4: kurtosis of a difference signal (Stewart 1977; D 4.2), dimensionless; 3 for Gaussian noise, more where a tooth knocks.
+///
+/// ```
+/// let mut difference: Vec<f64> = (0..1024).map(|i| (0.37 * f64::from(i)).sin()).collect();
+/// let smooth = hums::fm4(&difference)?;
+/// difference[500] += 8.0;
+/// assert!(smooth < 1.6 && hums::fm4(&difference)? > 3.0);
+/// # Ok::<(), hums::HumsError>(())
+/// ```
+///
+/// # Errors
+/// [`HumsError::Undefined`] for a constant signal; empty signal or non-finite sample.
+pub fn fm4(difference: &[f64]) -> Result<f64> {
+    kurtosis(difference)
 }
 
 /// M6A: sixth standardised moment, 15 for Gaussian noise, 2.5 for a sine.

@@ -6,12 +6,19 @@ use gear_numerics::spline::periodic_second_derivatives;
 
 impl Curve {
     /// The same value everywhere.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] for a value that is not finite.
     pub fn constant(value: f64) -> Result<Self, LpmError> {
         check(true, "constant value", value, "-", "finite")?;
         Ok(Self::assemble(1, vec![Piece { start: 0.0, a: [value, 0.0, 0.0, 0.0], kink: false }]))
     }
 
     /// Piecewise constant: `steps` holds (phase at which the value begins, value), phases ascending in `[0, period)`.
+    ///
+    /// # Errors
+    /// [`LpmError::Table`] for phases that do not ascend in `[0, period)` or values that are not finite; [`LpmError::Length`] for an empty list;
+    /// [`LpmError::OutOfRange`] for a period of 0.
     pub fn steps(period: usize, steps: &[(f64, f64)]) -> Result<Self, LpmError> {
         let (phases, values): (Vec<f64>, Vec<f64>) = steps.iter().copied().unzip();
         check_table(period, &phases, &values, 1)?;
@@ -20,6 +27,9 @@ impl Curve {
     }
 
     /// Rectangular wave of one cycle: `high` from phase `rise` for a fraction `duty` of the cycle, `low` elsewhere.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] unless `0 <= rise < 1` and `0 < duty < 1`; [`LpmError::Table`] for values that are not finite.
     pub fn rectangular(low: f64, high: f64, rise: f64, duty: f64) -> Result<Self, LpmError> {
         check((0.0..1.0).contains(&rise), "rise", rise, "cycles", "in [0, 1)")?;
         check(duty > 0.0 && duty < 1.0, "duty", duty, "-", "between 0 and 1, both excluded")?;
@@ -30,6 +40,10 @@ impl Curve {
     }
 
     /// Rectangular wave with ramps: straight lines of length `ramp` (cycles) centred on the two jumps.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] unless `0 <= rise < 1`, `0 < duty < 1` and `0 < ramp < min(duty, 1 - duty)`; [`LpmError::Table`] for values
+    /// that are not finite.
     pub fn trapezoidal(low: f64, high: f64, rise: f64, duty: f64, ramp: f64) -> Result<Self, LpmError> {
         check((0.0..1.0).contains(&rise), "rise", rise, "cycles", "in [0, 1)")?;
         check(duty > 0.0 && duty < 1.0, "duty", duty, "-", "between 0 and 1, both excluded")?;
@@ -47,6 +61,9 @@ impl Curve {
     }
 
     /// Table of values at ascending phases in `[0, period)`; the curve closes on itself after `period` cycles.
+    ///
+    /// # Errors
+    /// As [`Self::steps`]; [`LpmError::Length`] for lists of different length, or fewer points than the interpolation needs (2, splines 3).
     pub fn table(
         period: usize,
         phases: &[f64],
@@ -83,6 +100,9 @@ impl Curve {
     }
 
     /// Table of equally spaced values, the first at phase 0.
+    ///
+    /// # Errors
+    /// As [`Self::table`].
     pub fn samples(period: usize, values: &[f64], interpolation: Interpolation) -> Result<Self, LpmError> {
         let n = values.len().max(1) as f64;
         let phases: Vec<f64> = (0..values.len()).map(|i| i as f64 * period as f64 / n).collect();
@@ -90,6 +110,9 @@ impl Curve {
     }
 
     /// Fourier series of period one cycle: `mean + sum_j (c_j cos 2 pi j tau + s_j sin 2 pi j tau)`, `harmonics[j-1] = (c_j, s_j)`.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] for coefficients that are not finite.
     pub fn fourier(mean: f64, harmonics: &[(f64, f64)]) -> Result<Self, LpmError> {
         check(true, "mean of a Fourier series", mean, "-", "finite")?;
         for &(c, s) in harmonics {

@@ -6,6 +6,9 @@ use std::f64::consts::TAU;
 
 impl Curve {
     /// The curve moved to later phases by `shift` cycles: `new(tau) = old(tau - shift)`.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] for a shift that is not finite.
     pub fn shifted(&self, shift: f64) -> Result<Self, LpmError> {
         check(true, "shift", shift, "cycles", "finite")?;
         Ok(match &self.repr {
@@ -34,6 +37,9 @@ impl Curve {
     }
 
     /// `factor * curve + offset`.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] for numbers that are not finite.
     pub fn scaled(&self, factor: f64, offset: f64) -> Result<Self, LpmError> {
         check(true, "factor", factor, "-", "finite")?;
         check(true, "offset", offset, "-", "finite")?;
@@ -54,6 +60,9 @@ impl Curve {
     }
 
     /// The same function with a period `times` as long.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] for 0 repetitions.
     pub fn repeated(&self, times: usize) -> Result<Self, LpmError> {
         check(times >= 1, "repetitions", times as f64, "-", "at least 1")?;
         Ok(match &self.repr {
@@ -70,6 +79,9 @@ impl Curve {
 
     /// A rotation of `cycles` mesh cycles that follows `self` except in the cycles `first .. first + damaged.period()`,
     /// where it follows `damaged` (whose phase 0 falls on `first`). Both must be tables or steps.
+    ///
+    /// # Errors
+    /// [`LpmError::Period`] where the periods do not fit the rotation, or a curve is a Fourier series.
     pub fn with_cycles_replaced(&self, cycles: usize, first: usize, damaged: &Curve) -> Result<Self, LpmError> {
         let misfit = |reason| Err(LpmError::Period { first: cycles, second: damaged.period, reason });
         if !cycles.is_multiple_of(self.period) {

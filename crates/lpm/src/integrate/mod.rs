@@ -121,6 +121,9 @@ impl Options<'_> {
     }
 
     /// Checks ranges.
+    ///
+    /// # Errors
+    /// [`LpmError::OutOfRange`] for the first number outside its range.
     pub fn validate(&self) -> Result<(), LpmError> {
         match self.step {
             StepControl::Adaptive { tolerance: t } => {
