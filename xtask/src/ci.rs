@@ -11,7 +11,7 @@ pub fn run(full: bool) -> anyhow::Result<()> {
     let test: &[&str] = &["test", "--release", "--workspace"];
     cargo(&["fmt", "--all", "--check"], &[])?;
     cargo(&["clippy", "--release", "--workspace", "--all-targets", "--", "-D", "warnings"], &[])?;
-    docs::run(true, true)?;
+    docs::run(true, true, full)?;
     cargo(test, &[])?;
     if full {
         cargo(&[test, &["--", "--ignored"]].concat(), &[])?;

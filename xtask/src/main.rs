@@ -37,6 +37,9 @@ enum Command {
         /// Leave out the crates' API, which takes longest.
         #[arg(long)]
         no_api: bool,
+        /// Run the case files that pages name and compare the numbers on the pages with their results.
+        #[arg(long)]
+        numbers: bool,
     },
     /// Static transmission error against CalculiX (program `ccx`, Debian package calculix-ccx); writes docs/reports/calculix.md.
     PeerCalculix,
@@ -63,7 +66,7 @@ enum Command {
 fn main() -> anyhow::Result<()> {
     match Arguments::parse().command {
         Command::Ci { full } => ci::run(full),
-        Command::Docs { check, no_api } => docs::run(check, !no_api),
+        Command::Docs { check, no_api, numbers } => docs::run(check, !no_api, numbers),
         Command::PeerCalculix => calculix::run(),
         Command::PeerHousing => calculix_housing::run(),
         Command::CompareResults(options) => compare::run(&options),

@@ -6,6 +6,7 @@
 
 mod bibliography;
 mod check;
+mod numbers;
 mod page;
 mod reference;
 mod site;
@@ -32,8 +33,8 @@ impl fmt::Display for Fault {
 }
 
 /// Builds and checks the site. With `check`, committed pages that are not current are faults instead of being written; with `api`, the
-/// crates' documentation is built and put beside the pages.
-pub fn run(check: bool, api: bool) -> anyhow::Result<()> {
+/// crates' documentation is built and put beside the pages; with `numbers`, case files are run and numbers on pages compared with their results.
+pub fn run(check: bool, api: bool, numbers: bool) -> anyhow::Result<()> {
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
     let mut faults = Vec::new();
     for (file, text) in reference::pages() {
@@ -52,6 +53,12 @@ pub fn run(check: bool, api: bool) -> anyhow::Result<()> {
     let site = site::Site::read(root)?;
     for page in site.pages() {
         faults.extend(check::faults(page, root));
+    }
+    if numbers {
+        let mut runs = numbers::Runs::new(root);
+        for page in site.pages() {
+            faults.extend(runs.faults(page));
+        }
     }
     let target = target_folder(root);
     let folder = target.join("site");

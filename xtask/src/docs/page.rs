@@ -76,6 +76,11 @@ impl Page {
         page
     }
 
+    /// The Markdown.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
     /// Line of a byte of the text.
     fn line(&self, at: usize) -> usize {
         self.text[..at].matches('\n').count() + 1
