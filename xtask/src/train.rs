@@ -7,7 +7,6 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 use anyhow::{Context, ensure};
-use fecm::dynamics::Integrator;
 use fecm::{FaceModel, PairModel, PairModelOptions};
 use gear_geom::{
     BevelPair, BevelPlacement, BevelSpec, GearPair, Hand, MeshSite, PlanetaryTrain, PlanetaryTrainSpec, TrainError,
@@ -31,10 +30,14 @@ const PINION_SPEED: f64 = 6060.0 * TAU / 60.0;
 const BEVEL_TEETH: [u32; 2] = [19, 71];
 /// Mesh cycles between one planet at a place and the next.
 pub const CYCLES_PER_PASS: usize = 33;
-/// Steps of a mesh cycle (section 5.2).
-pub const STEPS: usize = 50;
-/// What a run takes unless it says otherwise.
-pub const INTEGRATOR: Integrator = Integrator::GeneralizedAlpha { spectral_radius: 0.8 };
+/// Positions of tables.
+pub const POSITIONS: usize = 128;
+/// Steps from one sample to the next.
+pub const STEPS_PER_SAMPLE: usize = 2;
+/// Band of the records (Hz): that of section 5.2.
+pub const BAND: f64 = 10e3;
+/// Samples of a mesh cycle: 2.56 a period of the band.
+pub const SAMPLES: usize = 45;
 /// Highest force of tables, in mean forces of the mesh.
 const HIGHEST: f64 = 4.0;
 /// Damping over stiffness of meshes and bearings (s).
@@ -73,16 +76,15 @@ pub fn model(train: &PlanetaryTrain, site: MeshSite, face: FaceModel) -> anyhow:
     Ok(PairModel::new(train.pair(site), &options)?)
 }
 
-/// Options of a table whose positions are met by the steps of the first planet.
-pub fn table_options(train: &PlanetaryTrain, site: MeshSite, positions: usize) -> anyhow::Result<TableOptions> {
-    let origin = train.mesh_offset(site, 0)?.rem_euclid(1.0);
-    Ok(TableOptions { positions_per_cycle: positions, origin, ..TableOptions::up_to(HIGHEST * mean_force(train)) })
+/// Options of a table.
+pub fn table_options(train: &PlanetaryTrain, positions: usize) -> TableOptions {
+    TableOptions { positions_per_cycle: positions, ..TableOptions::up_to(HIGHEST * mean_force(train)) }
 }
 
 /// Tables of both meshes of the stage, plane stress unless the face says otherwise.
 pub fn tables(train: &PlanetaryTrain, face: FaceModel, positions: usize) -> anyhow::Result<[Arc<dyn MeshLaw>; 2]> {
     let make = |site| -> anyhow::Result<Arc<dyn MeshLaw>> {
-        let options = table_options(train, site, positions)?;
+        let options = table_options(train, positions);
         Ok(Arc::new(MeshTable::from_contact(&model(train, site, face)?, &options, &())?))
     };
     Ok([make(MeshSite::SunPlanet)?, make(MeshSite::PlanetRing)?])
@@ -132,18 +134,23 @@ pub fn reduced(casing: &Casing, options: &ReductionOptions) -> anyhow::Result<Re
     Ok(casing.housing()?.reduce(options)?)
 }
 
-/// Motion at the usual speed and load: planet passes to settle and to record.
-pub fn request(steps: usize, settle_passes: usize, integrator: Integrator) -> RunRequest {
-    let pass = CYCLES_PER_PASS * steps;
+/// Motion at the usual speed and load: time steps from one sample to the next, planet passes to settle, one recorded.
+pub fn request(steps_per_sample: usize, settle_passes: usize) -> RunRequest {
+    let steps_per_cycle = SAMPLES * steps_per_sample;
+    let band = Band { frequency: BAND, steps_per_sample };
+    let lead = band.lead_steps(TAU / 99.0 / carrier_speed() / steps_per_cycle as f64);
+    let settle_steps = (settle_passes * CYCLES_PER_PASS * steps_per_cycle).max(lead);
     RunRequest {
-        turning: Turning::Steady { carrier_speed: carrier_speed(), steps_per_cycle: steps },
+        turning: Turning::Steady { carrier_speed: carrier_speed(), steps_per_cycle },
         output_torque: TORQUE,
-        travelled: 0.0,
+        // records begin at the same place
+        travelled: -(settle_steps as f64) / steps_per_cycle as f64,
         start: Start::Equilibrium,
-        settle_steps: settle_passes * pass,
-        record_steps: pass,
+        settle_steps,
+        samples: CYCLES_PER_PASS * SAMPLES,
+        band: Some(band),
         record_motion: false,
-        integrator,
+        stages: STAGES,
     }
 }
 

@@ -117,7 +117,7 @@ impl Drawing<'_> {
     fn spectrum(&self) -> Figure {
         let healthy = self.findings.states.iter().take(1).enumerate();
         let lines = healthy.filter_map(|(k, state)| {
-            Some(line(&state.name, k, Self::amplitudes(&state.signals[self.index], state.run.time_step)?))
+            Some(line(&state.name, k, Self::amplitudes(&state.signals[self.index], state.run.sample_time)?))
         });
         let labels = ["Frequency (Hz)", "Amplitude (g)"];
         marked(Chart { from_zero: true, ..chart(self.title.clone(), labels, lines.collect()) }, None, vec![])
@@ -142,7 +142,7 @@ impl Drawing<'_> {
     fn difference_spectrum(&self, period: usize) -> Figure {
         let lines = self.lines(|state| {
             let exact = state.judged[self.index].averages.get(period)?.exact.as_ref()?;
-            Self::amplitudes(exact, state.run.time_step)
+            Self::amplitudes(exact, state.run.sample_time)
         });
         let title = format!("{}, averaged over {}", self.title, period_name(self.findings.periods[period].averaging));
         let labels = ["Frequency (Hz)", "Exact difference signal (g)"];

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use common::{Scratch, gearwright, text};
 use serde_json::Value;
 
-/// The dissertation's planetary stage in a coarse housing, ten steps a mesh cycle; a crack on the ring tooth at 90 degrees.
+/// The dissertation's planetary stage in a coarse housing, ten samples and ten steps a mesh cycle; a crack on the ring tooth at 90 degrees.
 const CASE: &str = r#"kind = "transmission"
 title = "small"
 
@@ -93,7 +93,6 @@ crack.length_percent = 60.0
 [run]
 speed_rpm = 1621.7
 torque_n_m = 6106.0
-steps_per_mesh_cycle = 10
 carrier_turns = 1
 
 [contact]
@@ -101,7 +100,14 @@ element_order = 2
 mesh_density = 0.6
 cells_per_half_width = 4.0
 
+[analysis]
+table_positions = 16
+
+[numerics]
+steps_per_sample = 1
+
 [signals]
+band_hz = 2150.0
 sideband_pairs = 2
 "#;
 
@@ -168,7 +174,7 @@ fn run_writes_everything_it_promises_and_it_hangs_together() {
             assert!(folder.join(format!("{name}.{kind}")).metadata().unwrap().len() > 1000, "{name}.{kind}");
         }
     }
-    // a turn of the carrier from its start, ten steps a cycle
+    // a turn of the carrier from its start, ten samples a cycle: 2.56 in a period of the band, rounded up
     let turns = column(&folder.join("acceleration.csv"), "carrier_turn");
     assert_eq!((turns.len(), turns[0]), (990, 0.0));
     // mean force from the torque: T_c Z_s / (Z_s + Z_r) / (3 r_bs), the same at sun and ring
@@ -195,6 +201,18 @@ fn run_writes_everything_it_promises_and_it_hangs_together() {
     assert!(!indicators.contains("180.00 deg"));
     let fm4 = summary["states"][1]["sensors"][0]["fm4"][0]["exact"].as_f64().unwrap();
     assert!(fm4 > 3.0, "{fm4}");
+    // what steps and transient leave is measured
+    for what in ["left_by_steps", "left_by_transient"] {
+        for of in ["acceleration", "mesh_force"] {
+            let left = summary["resolution"][what][of].as_f64().unwrap();
+            assert!(left > 0.0 && left < 0.5, "{what} {of}: {left}");
+        }
+    }
+    // nothing above half the sample rate, nothing but the transition of the filter above the band
+    let (frequencies, lines) = (column(&folder.join("spectrum.csv"), "frequency_hz"), column(&folder.join("spectrum.csv"), "at_tooth_g"));
+    assert!((frequencies.last().unwrap() - 5.0 * 573.39).abs() < 10.0);
+    let greatest = |from: f64| frequencies.iter().zip(&lines).filter(|(f, _)| **f > from).map(|(_, a)| *a).fold(0.0, f64::max);
+    assert!(greatest(2800.0) < 1e-2 * greatest(100.0));
     // speeds of the dissertation
     assert!((summary["train"]["mesh_frequency_hz"].as_f64().unwrap() - 573.4).abs() < 0.1);
 }

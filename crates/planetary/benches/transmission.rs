@@ -10,8 +10,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use fecm::dynamics::Integrator;
-use planetary::engine::{Load, RunRequest, Start, Transmission, Turning};
+use planetary::engine::{Load, RunRequest, STAGES, Start, Transmission, Turning};
 use support::{equal, whole};
 
 fn run(c: &mut Criterion) -> Result<(), planetary::PlanetaryError> {
@@ -25,9 +24,10 @@ fn run(c: &mut Criterion) -> Result<(), planetary::PlanetaryError> {
         travelled: 0.0,
         start: Start::Equilibrium,
         settle_steps: 0,
-        record_steps: 0,
+        samples: 0,
+        band: None,
         record_motion: false,
-        integrator: Integrator::GeneralizedAlpha { spectral_radius: 0.8 },
+        stages: STAGES,
     };
     let mut runner = transmission.start(&request)?;
     c.bench_function("cycle_of_50_steps", |b| b.iter(|| runner.settle(50, &())));

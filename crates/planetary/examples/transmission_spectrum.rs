@@ -7,13 +7,12 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::time::Instant;
 
-use fecm::dynamics::Integrator;
 use fecm::{FaceModel, PairModel, PairModelOptions};
 use gear_geom::{FilletSpec, Gear, GearKind, GearSpec, MeshSite, PlanetaryTrain, PlanetaryTrainSpec, ToothThickness};
 use hums::spectrum::{Spectrum, Window};
 use planetary::elastic::ElasticBody;
 use planetary::engine::{
-    Anchor, Bearing, BodyId, Mesh, Planet, PlanetaryStage, RigidBody, RunRequest, Start, Transmission,
+    Anchor, Band, Bearing, BodyId, Mesh, Planet, PlanetaryStage, RigidBody, RunRequest, STAGES, Start, Transmission,
     TransmissionSpec, Turning,
 };
 use planetary::housing::{Casing, ReductionOptions};
@@ -49,16 +48,17 @@ fn main() -> Result<()> {
         travelled: 0.0,
         start: Start::Equilibrium,
         settle_steps: STEPS * ring_teeth / planets,
-        record_steps: STEPS * ring_teeth,
+        samples: STEPS * ring_teeth,
+        band: Some(Band { frequency: 10e3, steps_per_sample: 1 }),
         record_motion: false,
-        integrator: Integrator::GeneralizedAlpha { spectral_radius: 0.8 },
+        stages: STAGES,
     };
     let run = Transmission::new(&spec)?.run(&request, &())?;
     passed(&format!("{} steps, {} Newton iterations", run.stats.steps, run.stats.newton_iterations));
 
     let sensor = run.sensors.first().ok_or("the housing has no sensor")?;
     let spectrum = Spectrum::of(&sensor.acceleration, Window::Rectangular)?;
-    let frequencies = spectrum.frequencies(1.0 / run.time_step);
+    let frequencies = spectrum.frequencies(1.0 / run.sample_time);
     let amplitudes = spectrum.amplitudes();
     let mut lines: Vec<usize> = (1..amplitudes.len()).collect();
     lines.sort_by(|&a, &b| amplitudes[b].total_cmp(&amplitudes[a]));
@@ -112,13 +112,11 @@ fn transmission(train: &PlanetaryTrain, housing: ElasticBody) -> Result<Transmis
     let [z_s, z_p, z_r] = [&gears.sun, &gears.planet, &gears.ring].map(|gear| f64::from(gear.teeth()));
     let sun_torque = TORQUE * z_s / (z_s + z_r);
     let force = sun_torque / gears.sun.base_radius() / train.planets() as f64;
-    // all sun meshes are in phase, and all ring meshes: one table each, its positions those of the steps
+    // all sun meshes are in phase, and all ring meshes: one table each
     let table = |site| -> Result<Arc<MeshTable>> {
         let options = PairModelOptions { face: FaceModel::PlaneStress, ..PairModelOptions::default() };
         let model = PairModel::new(train.pair(site), &options)?;
-        let origin = (train.mesh_offset(site, 0)? * STEPS as f64).rem_euclid(1.0) / STEPS as f64;
-        let options = TableOptions { positions_per_cycle: STEPS, origin, ..TableOptions::up_to(3.0 * force) };
-        Ok(Arc::new(MeshTable::from_contact(&model, &options, &())?))
+        Ok(Arc::new(MeshTable::from_contact(&model, &TableOptions::up_to(3.0 * force), &())?))
     };
     let [sun_table, ring_table] = [table(MeshSite::SunPlanet)?, table(MeshSite::PlanetRing)?];
     let mesh = |site, planet| -> Result<Mesh> {

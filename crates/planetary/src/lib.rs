@@ -15,7 +15,7 @@
 //! use std::sync::Arc;
 //!
 //! use planetary::engine::{
-//!     Anchor, Bearing, BodyId, Load, Mesh, Planet, PlanetaryStage, RigidBody, RunRequest, Start, Transmission,
+//!     Anchor, Bearing, BodyId, Load, Mesh, Planet, PlanetaryStage, RigidBody, RunRequest, STAGES, Start, Transmission,
 //!     TransmissionSpec, Turning,
 //! };
 //! use planetary::mesh::{LinearMesh, Periodic};
@@ -98,9 +98,10 @@
 //!         travelled: 0.0,
 //!         start: Start::Equilibrium,
 //!         settle_steps: 500,
-//!         record_steps: 250,
+//!         samples: 250,
+//!         band: None,
 //!         record_motion: false,
-//!         integrator: Default::default(),
+//!         stages: STAGES,
 //!     },
 //!     &(),
 //! )?;

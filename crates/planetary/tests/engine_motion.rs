@@ -4,10 +4,9 @@ mod support;
 
 use std::f64::consts::{PI, TAU};
 
-use fecm::dynamics::Integrator;
 use planetary::PlanetaryError;
 use planetary::engine::{
-    Anchor, Bearing, BodyId, Load, RunRequest, Start, Transmission, TransmissionRun, TransmissionSpec, Turning,
+    Anchor, Bearing, BodyId, Load, RunRequest, STAGES, Start, Transmission, TransmissionRun, TransmissionSpec, Turning,
 };
 use support::{STANDING_AXES, equal, mesh, rigid_ring, train, with_coast};
 
@@ -15,16 +14,17 @@ const TORQUE: f64 = 6106.0;
 /// Of the carrier at 6060 rpm of the dissertation's pinion (rad/s).
 const SPEED: f64 = 347.5 * TAU / 60.0;
 
-fn steady(steps_per_cycle: usize, record_steps: usize) -> RunRequest {
+fn steady(steps_per_cycle: usize, samples: usize) -> RunRequest {
     RunRequest {
         turning: Turning::Steady { carrier_speed: SPEED, steps_per_cycle },
         output_torque: TORQUE,
         travelled: 0.0,
         start: Start::Equilibrium,
         settle_steps: 0,
-        record_steps,
+        samples,
+        band: None,
         record_motion: true,
-        integrator: Integrator::AverageAcceleration,
+        stages: STAGES,
     }
 }
 
@@ -104,7 +104,7 @@ fn order_of_an_oscillator_that_parts_from_its_mesh() {
     } else {
         -rate / outside * (outside * (phase - PI / inside)).sin()
     };
-    let errors: Vec<f64> = [400, 800, 1600, 3200]
+    let errors: Vec<f64> = [100, 200, 400, 800]
         .map(|steps| {
             let request = RunRequest {
                 turning: Turning::Standing { time_step: time / f64::from(steps) },
@@ -117,18 +117,16 @@ fn order_of_an_oscillator_that_parts_from_its_mesh() {
             (end.state.position[PLANET_ROTATION] - exact).abs() / (rate / outside)
         })
         .to_vec();
+    // parting and meeting within a step limit the order; their place in it scatters the errors
     let order = (errors[0] / errors[3]).log2() / 3.0;
-    assert!(order > 1.8 && errors[3] < 1e-3, "{errors:?}");
+    assert!(order > 1.5 && errors.iter().all(|error| *error < 3e-5), "{errors:?}");
 }
 
 #[test]
-fn order_two_with_bearings_of_any_stiffness() {
-    for (integrator, stiffness) in [
-        (Integrator::AverageAcceleration, 4e8),
-        (Integrator::GeneralizedAlpha { spectral_radius: 0.8 }, 4e8),
-        (Integrator::GeneralizedAlpha { spectral_radius: 0.8 }, 1e12),
-        (Integrator::GeneralizedAlpha { spectral_radius: 0.8 }, f64::INFINITY),
-    ] {
+fn order_with_bearings_of_any_stiffness() {
+    for (stages, stiffness) in
+        [(1, 4e8), (1, 1e12), (1, f64::INFINITY), (2, 4e8), (2, 1e12), (2, f64::INFINITY), (3, 4e8), (3, 1e12), (3, f64::INFINITY), (4, 4e8)]
+    {
         let mut spec = in_housing(&[0.1, 1.9, 4.4], 0.1);
         for planet in &mut spec.stage.planets {
             planet.bearing_stiffness[..2].fill(stiffness);
@@ -137,7 +135,7 @@ fn order_two_with_bearings_of_any_stiffness() {
         }
         let cycles = 2;
         let end = |steps: usize| {
-            let request = RunRequest { integrator, ..steady(steps, cycles * steps) };
+            let request = RunRequest { stages, ..steady(steps, cycles * steps) };
             let run = run(&spec, &request);
             assert!(run.meshes.iter().all(|mesh| mesh.steps_apart == 0));
             run.state.position
@@ -151,8 +149,12 @@ fn order_two_with_bearings_of_any_stiffness() {
                 norm(&difference) / norm(&exact)
             })
             .collect();
-        let order = (errors[1] / errors[3]).log2() / 2.0;
-        assert!(order > 1.8, "{integrator:?} {stiffness:e}: {errors:?}");
+        let order = (errors[0] / errors[2]).log2() / 2.0;
+        // 1e12 N/m is a frequency that no step resolves and nothing damps: it rings at the size of its start
+        let [least, floor] = if stiffness == 1e12 { [0.0, 1e-5] } else { [2.0 * f64::from(stages as u32) - 0.6, 0.0] };
+        let is_small = errors[1..].iter().all(|error| *error < floor);
+        assert!(order > least || is_small || stages == 4, "{stages} {stiffness:e}: {order} {errors:?}");
+        assert!(errors[3] < [1e-4, 1e-5, 1e-5, 1e-11][stages - 1], "{stages} {stiffness:e}: {errors:?}");
     }
 }
 
@@ -173,13 +175,46 @@ fn energy(spec: &TransmissionSpec, run: &TransmissionRun) -> f64 {
             sum += 0.5 * (state.velocity[i].powi(2) + (w * state.position[i]).powi(2));
         }
     }
-    for (index, record) in run.bearings.iter().enumerate() {
-        let stiffness: Vec<f64> = match spec.stage.planets.get(index) {
-            Some(planet) => planet.bearing_stiffness.to_vec(),
-            None => spec.bearings[index - spec.stage.planets.len()].stiffness.to_vec(),
+    let at = |body: usize, point: [f64; 3], axis: [f64; 3], rotates: bool| -> f64 {
+        let q = &state.position[6 * body..6 * body + 6];
+        let centre = spec.body(ids[body]).unwrap().position;
+        let r: [f64; 3] = std::array::from_fn(|k| point[k] - centre[k]);
+        let turned = [q[4] * r[2] - q[5] * r[1], q[5] * r[0] - q[3] * r[2], q[3] * r[1] - q[4] * r[0]];
+        (0..3).map(|k| axis[k] * if rotates { q[3 + k] } else { q[k] + turned[k] }).sum()
+    };
+    for (index, planet) in spec.stage.planets.iter().enumerate() {
+        let angle = planet.angle + TAU * 0.3 / 99.0;
+        let (sin, cos) = angle.sin_cos();
+        let point = [spec.stage.centre_distance * cos, spec.stage.centre_distance * sin, spec.stage.height];
+        let axes = [[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]];
+        for (k, stiffness) in planet.bearing_stiffness.iter().enumerate() {
+            // arms from where the carrier's turning has taken the planet
+            let own = &state.position[6 * (index + 2)..];
+            let of_planet: f64 = (0..3).map(|i| axes[k % 3][i] * own[if k < 3 { i } else { 3 + i }]).sum();
+            sum += 0.5 * stiffness * (of_planet - at(1, point, axes[k % 3], k >= 3)).powi(2);
+        }
+    }
+    for bearing in &spec.bearings {
+        let body = ids.iter().position(|id| *id == bearing.body).unwrap();
+        let port = match (&bearing.anchor, &spec.housing) {
+            (Anchor::Port(name), Some(housing)) => housing.ports.iter().find(|port| port.name == *name),
+            _ => None,
         };
-        for (load, k) in record.load.iter().zip(stiffness).filter(|(_, k)| *k > 0.0) {
-            sum += 0.5 * load.last().unwrap().powi(2) / k;
+        for (k, stiffness) in bearing.stiffness.iter().enumerate() {
+            let mut moved = at(body, bearing.position, bearing.axes[k % 3], k >= 3);
+            if let Some(port) = port {
+                assert_eq!(bearing.axes, STANDING_AXES);
+                let modal = &state.position[6 * ids.len()..];
+                let shape = |row: usize| (0..modal.len()).map(|m| port.shapes[(row, m)] * modal[m]).sum::<f64>();
+                let p = bearing.position;
+                let turned = [
+                    shape(4) * p[2] - shape(5) * p[1],
+                    shape(5) * p[0] - shape(3) * p[2],
+                    shape(3) * p[1] - shape(4) * p[0],
+                ];
+                moved -= if k < 3 { shape(k) + turned[k] } else { shape(k) };
+            }
+            sum += 0.5 * stiffness * moved * moved;
         }
     }
     for mesh in &run.meshes {
@@ -282,7 +317,7 @@ fn invariant_goes_on_to_the_bit_on_any_threads() {
     let mut runner = transmission.start(&request).unwrap();
     runner.settle(23, &()).unwrap();
     let request = RunRequest { start: Start::Given(Box::new(runner.state().clone())), ..request.clone() };
-    let rest = transmission.run(&RunRequest { record_steps: 37, ..request }, &()).unwrap();
+    let rest = transmission.run(&RunRequest { samples: 37, ..request }, &()).unwrap();
     assert_eq!(rest.state, whole.state);
     assert_eq!(rest.meshes[0].force, whole.meshes[0].force[23..]);
     assert_eq!(rest.first_step, 24);
@@ -301,14 +336,14 @@ fn extreme_speeds_loads_and_stiffnesses() {
                 }
                 let speed = sun_rpm * TAU / 60.0 * 27.0 / 126.0;
                 let turning = Turning::Steady { carrier_speed: speed, steps_per_cycle: 50 };
-                let integrator = Integrator::GeneralizedAlpha { spectral_radius: 0.8 };
-                let request = RunRequest { turning, output_torque: torque, integrator, ..steady(50, 30) };
+                let request = RunRequest { turning, output_torque: torque, ..steady(50, 30) };
                 let run = run(&spec, &request);
                 let size = run.state.position.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
                 let stats = run.stats;
                 // what is left is the rounding of compliance times force, terms larger than the displacements they add up to: millinewtons of 1e7 N
+                // and without a load, of flanks that touch by chance: nanonewtons
                 assert!(
-                    stats.worst_residual <= 1e-10 * size,
+                    stats.worst_residual <= 1e-10 * size + 1e-17,
                     "{sun_rpm} rpm, {torque} N m, {stiffness:e} N/m: {size} {stats:?}"
                 );
                 assert!(stats.newton_iterations <= 30 * stats.steps, "{stats:?}");
@@ -318,7 +353,7 @@ fn extreme_speeds_loads_and_stiffnesses() {
 }
 
 #[test]
-fn order_of_a_whirling_rotor() {
+fn analytic_whirling_rotor() {
     // I_t z'' - i I_p w z' + k z = 0 for the tilt z = rx + i ry of the sun, which its meshes at mid-height do not feel
     let (stiffness, tilting) = (1e5, 0.2);
     let mut spec = undamped(train(&equal(3, 0.3), 0.0));
@@ -330,8 +365,6 @@ fn order_of_a_whirling_rotor() {
     let mut state = transmission.equilibrium(&load).unwrap().state;
     state.velocity[3] = tilting;
     let gyroscopic = spec.sun.polar * spec.sun.spin_ratio * SPEED;
-    // the acceleration that the equation of motion gives, without which the order is one
-    state.acceleration[4] = gyroscopic / spec.sun.transverse * tilting;
     let root = (gyroscopic.powi(2) + 4.0 * spec.sun.transverse * stiffness).sqrt();
     let [forward, backward] = [1.0, -1.0].map(|sign| (gyroscopic + sign * root) / (2.0 * spec.sun.transverse));
     assert!(forward > 1.5 * -backward, "the spin matters");
@@ -343,13 +376,12 @@ fn order_of_a_whirling_rotor() {
         size * ((forward * time).sin() - (backward * time).sin()),
         -size * ((forward * time).cos() - (backward * time).cos()),
     ];
-    let errors = [100, 200, 400, 800].map(|steps| {
+    let errors = [200, 400].map(|steps| {
         let start = Start::Given(Box::new(state.clone()));
         let end = transmission.run(&RunRequest { start, ..steady(steps, cycles * steps) }, &()).unwrap().state.position;
         f64::hypot(end[3] - exact[0], end[4] - exact[1]) / size
     });
-    let order = (errors[1] / errors[3]).log2() / 2.0;
-    assert!(order > 1.9 && errors[3] < 0.02, "{errors:?}");
+    assert!(errors.iter().all(|error| *error < 1e-7), "{errors:?}");
 }
 
 #[test]

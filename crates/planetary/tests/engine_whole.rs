@@ -4,8 +4,7 @@ mod support;
 
 use std::f64::consts::TAU;
 
-use fecm::dynamics::Integrator;
-use planetary::engine::{Anchor, BodyId, Load, RunRequest, Start, Transmission, Turning};
+use planetary::engine::{Anchor, BodyId, Load, RunRequest, STAGES, Start, Transmission, Turning};
 use support::{equal, train, whole};
 
 const TORQUE: f64 = 6106.0;
@@ -76,9 +75,10 @@ fn invariant_planet_pass_repeats_where_planets_are_equal() {
         travelled: 0.0,
         start: Start::Equilibrium,
         settle_steps: 3 * pass,
-        record_steps: 3 * pass,
+        samples: 3 * pass,
+        band: None,
         record_motion: false,
-        integrator: Integrator::GeneralizedAlpha { spectral_radius: 0.8 },
+        stages: STAGES,
     };
     let run = Transmission::new(&spec).unwrap().run(&request, &()).unwrap();
     let change = run.periodic_change(pass).unwrap();

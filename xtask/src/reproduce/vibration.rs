@@ -168,7 +168,7 @@ impl Vibration {
     pub fn compute(case: &TransmissionCase, cache: &Cache) -> anyhow::Result<Self> {
         let found = study::compute(case, cache, &())?;
         let clock = Clock {
-            per_mesh: case.inputs.run.steps_per_mesh_cycle as usize,
+            per_mesh: case.sampling.samples_per_cycle,
             ring_teeth: case.inputs.ring.teeth as usize,
             planets: case.train.planets(),
             mesh_hz: found.mesh_frequency,

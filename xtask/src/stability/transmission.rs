@@ -4,17 +4,14 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use fecm::FaceModel;
-use fecm::dynamics::Integrator;
 use gear_geom::{Damage, Member, MeshSite, PlanetaryTrain, RootCrack};
-use planetary::engine::{Anchor, Load, RunRequest, Start, Transmission, TransmissionSpec, Turning};
+use planetary::engine::{Anchor, Band, Load, RunRequest, Start, Transmission, TransmissionSpec, Turning};
 use planetary::housing::{Casing, ReductionOptions};
 use planetary::mesh::{DamagedTooth, MeshLaw, MeshTable, TableOptions};
 
 use super::{Answer, Table};
-use crate::train::{self, INTEGRATOR, Scene, TORQUE};
+use crate::train::{self, POSITIONS, STEPS_PER_SAMPLE, Scene, TORQUE};
 
-/// Steps of a mesh cycle, and positions of tables.
-const STEPS: usize = 25;
 
 type Outcome = anyhow::Result<Answer>;
 
@@ -58,7 +55,7 @@ fn scene() -> anyhow::Result<Scene> {
     let gears = train::train(train::equal(3))?;
     let housing = train::reduced(&coarse(), &few_modes())?.body;
     Ok(Scene {
-        laws: train::tables(&gears, FaceModel::PlaneStress, STEPS)?,
+        laws: train::tables(&gears, FaceModel::PlaneStress, POSITIONS)?,
         bevel: Some(train::bevel_law()?),
         places: train::places(&housing),
         housing: Some(housing),
@@ -67,7 +64,7 @@ fn scene() -> anyhow::Result<Scene> {
 }
 
 fn usual() -> RunRequest {
-    train::request(STEPS, 1, INTEGRATOR)
+    train::request(STEPS_PER_SAMPLE, 1)
 }
 
 /// Rest and motion of a transmission, the latter's mean torques where they should be even.
@@ -102,7 +99,7 @@ fn run(spec: &TransmissionSpec, request: &RunRequest, is_even: bool) -> Outcome 
         stats.newton_iterations as f64 / stats.steps as f64
     );
     for (count, what) in
-        [(apart, "steps apart"), (touched, "with coast flanks"), (stats.fallbacks, "steps with a search")]
+        [(apart, "steps apart"), (touched, "with coast flanks"), (stats.fallbacks, "steps of one stage")]
     {
         if count > 0 {
             said += &format!(", {count} {what}");
@@ -207,13 +204,14 @@ fn operation(table: &mut Table, scene: &Scene) {
     }
     for rpm in [1.0, 600.0, 20_000.0, 60_000.0] {
         table.answered(format!("{rpm} rpm"), || {
-            let turning =
-                Turning::Steady { carrier_speed: train::carrier_speed() * rpm / 6060.0, steps_per_cycle: STEPS };
-            run(&scene.spec()?, &RunRequest { turning, ..usual() }, rpm < 1e4)
+            let part = rpm / 6060.0;
+            let turning = Turning::Steady { carrier_speed: train::carrier_speed() * part, steps_per_cycle: 90 };
+            let band = Some(Band { frequency: train::BAND * part, steps_per_sample: STEPS_PER_SAMPLE });
+            run(&scene.spec()?, &RunRequest { turning, band, ..usual() }, rpm < 1e4)
         });
     }
     table.answered("standing, steps of 20 us", || {
-        run(&scene.spec()?, &RunRequest { turning: Turning::Standing { time_step: 2e-5 }, ..usual() }, true)
+        run(&scene.spec()?, &RunRequest { turning: Turning::Standing { time_step: 2e-5 }, band: None, samples: 3000, ..usual() }, true)
     });
     table.answered("after a million mesh cycles", || {
         run(&scene.spec()?, &RunRequest { travelled: 1e6, ..usual() }, true)
@@ -263,7 +261,7 @@ fn planets(table: &mut Table, scene: &Scene) {
 
 fn cracked(train: &PlanetaryTrain, site: MeshSite, teeth: &[(Member, i64, f64)]) -> anyhow::Result<Arc<dyn MeshLaw>> {
     let model = train::model(train, site, FaceModel::PlaneStress)?;
-    let options = TableOptions { octaves: 4, ..train::table_options(train, site, STEPS)? };
+    let options = TableOptions { octaves: 4, ..train::table_options(train, POSITIONS) };
     let sound = MeshTable::from_contact(&model, &options, &())?;
     let teeth: Vec<DamagedTooth> = teeth
         .iter()
@@ -311,28 +309,22 @@ fn undamped(spec: &mut TransmissionSpec) {
 }
 
 fn numerics(table: &mut Table, scene: &Scene) {
-    for steps in [4, 10, 1000] {
+    for steps in [4, 10, 30, 100, 1000] {
         table.answered(format!("{steps} steps a mesh cycle"), || {
-            let request = RunRequest { record_steps: 33 * steps, ..train::request(steps, 0, INTEGRATOR) };
-            run(&scene.spec()?, &request, false)
+            let turning = Turning::Steady { carrier_speed: train::carrier_speed(), steps_per_cycle: steps };
+            run(&scene.spec()?, &RunRequest { turning, band: None, samples: 33 * steps, ..train::request(1, 0) }, false)
         });
     }
-    for (name, integrator) in [
-        ("spectral radius 0", Integrator::GeneralizedAlpha { spectral_radius: 0.0 }),
-        ("spectral radius 1", Integrator::GeneralizedAlpha { spectral_radius: 1.0 }),
-        ("average acceleration", Integrator::AverageAcceleration),
-    ] {
-        table.answered(name, || run(&scene.spec()?, &train::request(STEPS, 1, integrator), true));
-    }
-    for (name, integrator) in
-        [("average acceleration", Integrator::AverageAcceleration), ("generalised alpha 0.8", INTEGRATOR)]
-    {
-        table.answered(format!("no damping at all, {name}, 10 planet passes"), || {
-            let mut spec = scene.spec()?;
-            undamped(&mut spec);
-            run(&spec, &train::request(STEPS, 9, integrator), true)
+    for stages in [1, 2, 4] {
+        table.answered(format!("{stages} of the 4 stages a step may have"), || {
+            run(&scene.spec()?, &RunRequest { stages, ..usual() }, true)
         });
     }
+    table.answered("no damping at all, 10 planet passes", || {
+        let mut spec = scene.spec()?;
+        undamped(&mut spec);
+        run(&spec, &train::request(STEPS_PER_SAMPLE, 9), true)
+    });
     table.answered("damping of meshes times 1e4", || {
         changed(scene, |spec| {
             for planet in &mut spec.stage.planets {
@@ -395,12 +387,14 @@ fn refusals(table: &mut Table, scene: &Scene) {
     };
     let turning = |carrier_speed: f64, steps_per_cycle: usize| Turning::Steady { carrier_speed, steps_per_cycle };
     let speed = train::carrier_speed();
-    asked("3 steps a mesh cycle", RunRequest { turning: turning(speed, 3), ..usual() });
-    asked("speed 0", RunRequest { turning: turning(0.0, STEPS), ..usual() });
-    asked("speed NaN", RunRequest { turning: turning(f64::NAN, STEPS), ..usual() });
+    asked("3 steps a mesh cycle", RunRequest { turning: turning(speed, 3), band: None, ..usual() });
+    asked("speed 0", RunRequest { turning: turning(0.0, 90), ..usual() });
+    asked("speed NaN", RunRequest { turning: turning(f64::NAN, 90), ..usual() });
     asked("torque NaN", RunRequest { output_torque: f64::NAN, ..usual() });
     asked("torque that drives", RunRequest { output_torque: -TORQUE, ..usual() });
-    asked("spectral radius 1.1", train::request(STEPS, 1, Integrator::GeneralizedAlpha { spectral_radius: 1.1 }));
+    asked("5 stages", RunRequest { stages: 5, ..usual() });
+    let band = |frequency| Some(Band { frequency, steps_per_sample: 1 });
+    asked("a band above half the sample rate", RunRequest { band: band(1e6), ..usual() });
     table.refused("free input: nothing holds the load", || changed(scene, |spec| spec.drive = None));
     table.refused("carrier of no mass", || changed(scene, |spec| spec.carrier.mass = 0.0));
     table.refused("negative stiffness", || changed(scene, |spec| spec.bearings[0].stiffness[1] = -1.0));

@@ -9,28 +9,23 @@ use std::time::Instant;
 
 use anyhow::ensure;
 use fecm::FaceModel;
-use fecm::dynamics::Integrator;
 use fecm::statics::PairModelOptions;
 use gear_geom::MeshSite;
-use hums::spectrum::{Spectrum, Window};
 use planetary::elastic::ElasticBody;
-use planetary::engine::{RunRequest, Transmission, TransmissionRun};
+use planetary::engine::{RunRequest, STAGES, Transmission, TransmissionRun};
 use planetary::housing::{Casing, ReducedHousing, ReductionOptions};
 use planetary::mesh::{MeshLaw, MeshTable, TableOptions};
 
 use super::report::{Entry, Report};
-use crate::train::{self, INTEGRATOR, STEPS, Scene};
+use crate::train::{self, POSITIONS, STEPS_PER_SAMPLE, Scene};
 
-/// Positions of the finest tables, which the study of steps uses too, and steps at which positions are compared.
-const POSITIONS: usize = 200;
-/// Steps of the reference in time.
-const FINE: usize = 400;
-/// Frequency up to which accelerations are compared a second time (Hz): that of section 5.2.
-const BAND: f64 = 10e3;
+/// Positions of the finest tables, which the study of steps uses too.
+const FINEST_POSITIONS: usize = 512;
+/// Steps per sample, and stages, of the reference in time.
+const FINE: (usize, usize) = (8, 4);
 /// Planet passes after which bevel mesh and planets are where they were.
 const PASSES: usize = 9;
 const ACCELERATION: &str = "acceleration";
-const IN_BAND: &str = "acceleration up to 10 kHz";
 const FORCE: &str = "mesh forces";
 const TRANSIENT: &str = "a planet pass of transient and one recorded";
 
@@ -39,8 +34,6 @@ struct Curves {
     /// Rows of sensors, then of meshes.
     accelerations: Vec<Vec<f64>>,
     forces: Vec<Vec<f64>>,
-    /// Length of the record (s).
-    duration: f64,
 }
 
 /// Runs the study.
@@ -49,7 +42,7 @@ pub fn run() -> anyhow::Result<()> {
     let gears = train::train(train::equal(3))?;
     let housing = train::reduced(&train::casing(train::element_size()), &ReductionOptions::default())?;
     let mut scene = Scene {
-        laws: train::tables(&gears, FaceModel::PlaneStress, STEPS)?,
+        laws: train::tables(&gears, FaceModel::PlaneStress, POSITIONS)?,
         bevel: Some(train::bevel_law()?),
         places: train::places(&housing.body),
         housing: Some(housing.body),
@@ -61,39 +54,35 @@ pub fn run() -> anyhow::Result<()> {
     time(&scene)
 }
 
-/// Steps, integrator, transient.
+/// Steps, stages, transient.
 fn time(scene: &Scene) -> anyhow::Result<()> {
     let mut entries = Vec::new();
-    let alpha = |spectral_radius| Integrator::GeneralizedAlpha { spectral_radius };
-    let (reference, seconds) = solve(scene, &train::request(FINE, 1, INTEGRATOR))?;
-    println!("{FINE} steps a mesh cycle: {seconds:.1} s");
-    for steps in [25, STEPS, 100, 200] {
-        let (own, seconds) = solve(scene, &train::request(steps, 1, INTEGRATOR))?;
-        entries.push(entry("steps a mesh cycle", steps, steps == STEPS, seconds, own.errors(&reference)?));
-    }
-    for (integrator, name) in [
-        (Integrator::AverageAcceleration, "average acceleration"),
-        (alpha(0.9), "generalised alpha 0.9"),
-        (alpha(0.8), "generalised alpha 0.8"),
-        (alpha(0.6), "generalised alpha 0.6"),
-    ] {
-        let (own, seconds) = solve(scene, &train::request(STEPS, 1, integrator))?;
-        entries.push(entry("integrator", name, integrator == INTEGRATOR, seconds, own.errors(&reference)?));
+    let of = |(steps, stages): (usize, usize)| RunRequest { stages, ..train::request(steps, 1) };
+    let (reference, seconds) = solve(scene, &of(FINE))?;
+    println!("{} steps a sample, {} stages: {seconds:.1} s", FINE.0, FINE.1);
+    for stages in 1..=4 {
+        for steps in [1, 2, 4, 8].into_iter().filter(|steps| (*steps, stages) != FINE) {
+            let (own, seconds) = solve(scene, &of((steps, stages)))?;
+            let is_default = (steps, stages) == (STEPS_PER_SAMPLE, STAGES);
+            let family = format!("steps per sample, {stages} {}", if stages == 1 { "stage" } else { "stages" });
+            entries.push(entry(&family, steps, is_default, seconds, own.errors(&reference)));
+        }
     }
     for passes in 0..=3 {
-        let (own, seconds) = solve(scene, &train::request(STEPS, passes, INTEGRATOR))?;
-        let (settled, _) = solve(scene, &train::request(STEPS, passes + PASSES, INTEGRATOR))?;
+        let (own, seconds) = solve(scene, &train::request(STEPS_PER_SAMPLE, passes))?;
+        let (settled, _) = solve(scene, &train::request(STEPS_PER_SAMPLE, passes + PASSES))?;
         let name = "planet passes before the record";
-        entries.push(entry(name, passes, passes == 1, seconds, own.errors(&settled)?));
+        entries.push(entry(name, passes, passes == 1, seconds, own.errors(&settled)));
     }
     write(
         "transmission-time",
         "steps in time",
         &format!(
-            "Time is that of the run: equilibrium, {TRANSIENT}; tables of {POSITIONS} positions a mesh cycle are made before. Steps and integrators against {FINE} steps with the \
-             default integrator; planet passes before the record against the same places of the transmission {PASSES} passes later."
+            "Time is that of the run: equilibrium, {TRANSIENT}; tables of {FINEST_POSITIONS} positions a mesh cycle are made before. Steps and stages against {} steps a sample of {} stages; planet passes before the record against the same places of the transmission {PASSES} passes later.",
+            FINE.0,
+            FINE.1,
         ),
-        vec![ACCELERATION, IN_BAND, FORCE],
+        vec![ACCELERATION, FORCE],
         entries,
     )
 }
@@ -109,51 +98,50 @@ fn meshes(scene: &Scene) -> anyhow::Result<[Arc<dyn MeshLaw>; 2]> {
         let clock = Instant::now();
         let mut laws = scene.laws.clone();
         for (k, site) in MeshSite::ALL.into_iter().enumerate() {
-            let options = TableOptions { tolerance, ..train::table_options(gears, site, positions)? };
+            let options = TableOptions { tolerance, ..train::table_options(gears, positions) };
             laws[k] = Arc::new(MeshTable::from_contact(&plane[k], &options, &())?);
         }
         Ok((laws, clock.elapsed().as_secs_f64()))
     };
-    let with = |laws: &[Arc<dyn MeshLaw>; 2], steps: usize| -> anyhow::Result<Curves> {
+    let with = |laws: &[Arc<dyn MeshLaw>; 2]| -> anyhow::Result<Curves> {
         let own = Scene { laws: laws.clone(), ..scene.clone() };
-        Ok(solve(&own, &train::request(steps, 1, INTEGRATOR))?.0)
+        Ok(solve(&own, &train::request(STEPS_PER_SAMPLE, 1))?.0)
     };
-    let tolerance = train::table_options(gears, MeshSite::SunPlanet, STEPS)?.tolerance;
-    let (finest, seconds) = make(POSITIONS, tolerance)?;
-    println!("{POSITIONS} positions in {seconds:.1} s");
-    let fine = with(&finest, POSITIONS)?;
-    for positions in [10, 25, STEPS, 100] {
+    let tolerance = train::table_options(gears, POSITIONS).tolerance;
+    let (finest, seconds) = make(FINEST_POSITIONS, tolerance)?;
+    println!("{FINEST_POSITIONS} positions in {seconds:.1} s");
+    let fine = with(&finest)?;
+    for positions in [16, 32, 64, POSITIONS, 256] {
         let (laws, seconds) = make(positions, tolerance)?;
-        let errors = with(&laws, POSITIONS)?.errors(&fine)?;
-        entries.push(entry("positions a mesh cycle", positions, positions == STEPS, seconds, errors));
+        let errors = with(&laws)?.errors(&fine);
+        entries.push(entry("positions a mesh cycle", positions, positions == POSITIONS, seconds, errors));
     }
-    let fine = with(&make(STEPS, 1e-6)?.0, STEPS)?;
+    let fine = with(&make(POSITIONS, 1e-6)?.0)?;
     for allowed in [1e-1, 1e-2, tolerance, 1e-4] {
-        let (laws, seconds) = make(STEPS, allowed)?;
-        let errors = with(&laws, STEPS)?.errors(&fine)?;
+        let (laws, seconds) = make(POSITIONS, allowed)?;
+        let errors = with(&laws)?.errors(&fine);
         entries.push(entry("tolerance", format!("{allowed:.0e}"), allowed == tolerance, seconds, errors));
     }
     let solid = PairModelOptions::default().face;
     let face = |face| -> anyhow::Result<(Curves, f64)> {
         let clock = Instant::now();
-        let laws = train::tables(gears, face, STEPS)?;
+        let laws = train::tables(gears, face, POSITIONS)?;
         let seconds = clock.elapsed().as_secs_f64();
-        Ok((with(&laws, STEPS)?, seconds))
+        Ok((with(&laws)?, seconds))
     };
     let (fine, seconds) = face(solid)?;
     println!("3-D tables in {seconds:.1} s");
     for (model, name) in [(FaceModel::PlaneStress, "plane stress"), (FaceModel::PlaneStrain, "plane strain")] {
         let (own, seconds) = face(model)?;
-        entries.push(entry("model of the teeth", name, model == FaceModel::PlaneStress, seconds, own.errors(&fine)?));
+        entries.push(entry("model of the teeth", name, model == FaceModel::PlaneStress, seconds, own.errors(&fine)));
     }
     write(
         "transmission-meshes",
         "mesh tables",
         &format!(
-            "Time is that of both tables of the planetary stage, which the program makes once and keeps. Positions at {POSITIONS} steps a mesh cycle against {POSITIONS} positions (between its \
-             positions a table is a straight line); tolerance where tooth pairs join against 1e-6; plane models against 3-D, made in {seconds:.0} s."
+            "Time is that of both tables of the planetary stage, which the program makes once and keeps. Positions against {FINEST_POSITIONS}; tolerance where tooth pairs join against 1e-6; plane models against 3-D, made in {seconds:.0} s."
         ),
-        vec![ACCELERATION, IN_BAND, FORCE],
+        vec![ACCELERATION, FORCE],
         entries,
     )?;
     Ok(finest)
@@ -172,7 +160,7 @@ fn housings(scene: &Scene) -> anyhow::Result<()> {
     };
     let with = |body: ElasticBody| -> anyhow::Result<(Curves, f64)> {
         let own = Scene { housing: Some(body), ..scene.clone() };
-        solve(&own, &train::request(STEPS, 1, INTEGRATOR))
+        solve(&own, &train::request(STEPS_PER_SAMPLE, 1))
     };
     let (most, _) = make(&usual, &options(MODES, 20e3))?;
     let (fine, _) = with(most.body.clone())?;
@@ -187,10 +175,10 @@ fn housings(scene: &Scene) -> anyhow::Result<()> {
         let alone = modes_alone(&reduced.body, modes);
         let (own, run) = with(reduced.body)?;
         let is_default = hertz == default.highest_frequency;
-        let errors = own.errors(&fine)?;
+        let errors = own.errors(&fine);
         entries.push(entry("highest frequency", says.clone(), is_default, seconds + run, errors));
         let (own, run) = with(alone)?;
-        entries.push(entry("without static responses", says, false, seconds + run, own.errors(&fine)?));
+        entries.push(entry("without static responses", says, false, seconds + run, own.errors(&fine)));
     }
     write(
         "transmission-housing",
@@ -199,7 +187,7 @@ fn housings(scene: &Scene) -> anyhow::Result<()> {
             "Time is that of meshing, factoring and reducing the housing, and of the run: {TRANSIENT}. Against modes up to 20 kHz ({}). Damping ratio 0.02 of all modes, of static responses too.",
             most.stats.modes
         ),
-        vec![ACCELERATION, IN_BAND, FORCE],
+        vec![ACCELERATION, FORCE],
         entries,
     )?;
     let mut entries = Vec::new();
@@ -215,7 +203,7 @@ fn housings(scene: &Scene) -> anyhow::Result<()> {
         let says = format!("{:.0} mm, {} unknowns", 1e3 * casing.density.element_size, reduced.stats.unknowns);
         let frequency = natural_error(&reduced.body.frequencies, &frequencies);
         let (own, run) = with(reduced.body)?;
-        let mut errors = own.errors(&fine)?;
+        let mut errors = own.errors(&fine);
         errors.insert(0, frequency);
         entries.push(entry("element size", says, factor == 1.0, seconds + run, errors));
     }
@@ -228,7 +216,7 @@ fn housings(scene: &Scene) -> anyhow::Result<()> {
             500.0 * train::element_size(),
             finest.stats.unknowns,
         ),
-        vec!["natural frequencies", ACCELERATION, IN_BAND, FORCE],
+        vec!["natural frequencies", ACCELERATION, FORCE],
         entries,
     )
 }
@@ -267,44 +255,23 @@ fn solve(scene: &Scene, request: &RunRequest) -> anyhow::Result<(Curves, f64)> {
 impl Curves {
     fn new(run: TransmissionRun) -> Self {
         Self {
-            duration: run.time_step * run.len() as f64,
             accelerations: run.sensors.into_iter().map(|sensor| sensor.acceleration).collect(),
             forces: run.meshes.into_iter().map(|mesh| mesh.force).collect(),
         }
     }
 
-    /// Of accelerations, of their band, of forces.
-    fn errors(&self, fine: &Self) -> anyhow::Result<Vec<f64>> {
+    /// Of accelerations and of forces.
+    fn errors(&self, fine: &Self) -> Vec<f64> {
         let in_time = |own: &[Vec<f64>], fine: &[Vec<f64>]| {
             let (mut squares, mut variance) = (0.0, 0.0);
             for (own, fine) in own.iter().zip(fine) {
-                let every = fine.len() / own.len();
-                let pairs = own.iter().zip(fine.iter().skip(every - 1).step_by(every));
-                squares += pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>() / own.len() as f64;
+                squares += own.iter().zip(fine).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
                 let mean = fine.iter().sum::<f64>() / fine.len() as f64;
-                variance += fine.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / fine.len() as f64;
+                variance += fine.iter().map(|x| (x - mean).powi(2)).sum::<f64>();
             }
             (squares / variance).sqrt()
         };
-        Ok(vec![
-            in_time(&self.accelerations, &fine.accelerations),
-            in_time(&self.band()?, &fine.band()?),
-            in_time(&self.forces, &fine.forces),
-        ])
-    }
-
-    /// Complex amplitudes of the accelerations in the band, real and imaginary parts one after the other.
-    fn band(&self) -> anyhow::Result<Vec<Vec<f64>>> {
-        let bins = (BAND * self.duration).floor() as usize;
-        let of = |acceleration: &Vec<f64>| -> anyhow::Result<Vec<f64>> {
-            // records end, not begin, at the same place: phases are counted from there
-            let mut samples = acceleration.clone();
-            samples.rotate_right(1);
-            let spectrum = Spectrum::of(&samples, Window::Rectangular)?;
-            let inside = spectrum.bins().iter().take(bins + 1).skip(1);
-            Ok(inside.flat_map(|bin| [bin.re, bin.im]).map(|x| x / samples.len() as f64).collect())
-        };
-        self.accelerations.iter().map(of).collect()
+        vec![in_time(&self.accelerations, &fine.accelerations), in_time(&self.forces, &fine.forces)]
     }
 }
 
@@ -326,8 +293,9 @@ fn write(
         title: format!("Transmission: error against run time, {of}"),
         text: format!(
             "Written by `cargo xtask work-precision transmission`. Planetary stage with bevel stage and elastic housing (dissertation, chapter 5; what is not printed there is chosen), \
-             6060 rpm, 6106 N m, {STEPS} steps a mesh cycle, generalised alpha 0.8, plane stress unless named. One parameter varied at a time. {text} Errors are root mean squares of the \
-             difference over a planet pass, both sensors or all meshes together, relative to the root mean square of the finest curves about their means; up to 10 kHz: of their harmonics of the planet pass."
+             6060 rpm, 6106 N m, records of {:.0} kHz, {STEPS_PER_SAMPLE} steps a sample, plane stress unless named. One parameter varied at a time. {text} Errors are root mean squares of the \
+             difference over a planet pass, both sensors or all meshes together, relative to the root mean square of the finest curves about their means.",
+            1e-3 * train::BAND,
         ),
         quantities,
         entries,

@@ -5,7 +5,6 @@ use gear_geom::MeshSite;
 use super::resolve::TransmissionCase;
 use super::schema::Transmission;
 use crate::document::Node;
-use crate::dynamics::schema::Integrator;
 use crate::notes::Notes;
 use crate::physics::{self, NamedPair};
 use crate::spur_pair::notes::{contact_keys, damage_keys, gear_keys};
@@ -42,9 +41,6 @@ fn idle_keys(case: &TransmissionCase, document: &Node, notes: &mut Notes) {
     idle("contact", &["slope_step_percent"], "tables of meshes take the exact tangent");
     if document.find("train.planet_angles_deg").is_some() {
         idle("train", &["first_planet_deg"], "train.planet_angles_deg is given");
-    }
-    if inputs.numerics.integrator == Integrator::Newmark {
-        idle("numerics", &["spectral_radius"], "only \"generalized-alpha\" has it");
     }
     if case.bevel.is_none() {
         idle("bodies", &["bevel_pinion", "bevel_gear"], "there is no [bevel]");

@@ -3,7 +3,6 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use fecm::dynamics::Integrator;
 use fecm::statics::PairModelOptions;
 use gear_geom::{CentralMember, Gear, PlanetaryTrain, PlanetaryTrainSpec, TrainError, TrainSpeeds};
 
@@ -13,7 +12,6 @@ use super::housing::{HousingPlan, plan};
 use super::notes::notes;
 use super::schema::{Bearing, Body, Supported, Transmission};
 use crate::document::Node;
-use crate::dynamics::schema;
 use crate::fault::Fault;
 use crate::geometry::geometry_fault;
 use crate::notes::Notes;
@@ -50,10 +48,49 @@ pub struct TransmissionCase {
     pub housing: Option<HousingPlan>,
     /// Damaged states to run after the healthy one.
     pub severities: Vec<Severity>,
-    /// Time integration.
-    pub integrator: Integrator,
+    /// Samples of records, and steps of time.
+    pub sampling: Sampling,
     /// Warnings and assumptions.
     pub notes: Notes,
+}
+
+/// Samples of records, and steps of time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sampling {
+    /// Band of the records (Hz).
+    pub band: f64,
+    /// Samples of a mesh cycle of the planetary stage.
+    pub samples_per_cycle: usize,
+    /// Time steps from one sample to the next.
+    pub steps_per_sample: usize,
+}
+
+/// Samples per period of the highest frequency of the band.
+const SAMPLES_PER_PERIOD: f64 = 2.56;
+/// Longest step by default, as an angle of the highest frequency of the band (rad): three stages move a mode that only connections hold by its sixth power over
+/// 100,800, 2e-4 at the band, and others less.
+const LONGEST_STEP: f64 = 1.65;
+/// Steps of a mesh cycle by default, at least: tooth pairs come and go within.
+const FEWEST_STEPS: f64 = 40.0;
+
+impl Sampling {
+    fn new(inputs: &Transmission, mesh_frequency: f64) -> Self {
+        let band = inputs.signals.band_hz;
+        let samples = (SAMPLES_PER_PERIOD * band / mesh_frequency).ceil().max(2.0);
+        let steps = (TAU * band / mesh_frequency / LONGEST_STEP).max(FEWEST_STEPS);
+        let by_default = (steps / samples).ceil().max(1.0);
+        Self {
+            band,
+            samples_per_cycle: samples as usize,
+            steps_per_sample: inputs.numerics.steps_per_sample.map_or(by_default as usize, |given| given as usize),
+        }
+    }
+
+    /// Steps of a mesh cycle.
+    #[must_use]
+    pub fn steps_per_cycle(&self) -> usize {
+        self.samples_per_cycle * self.steps_per_sample
+    }
 }
 
 /// Rigid bodies.
@@ -121,13 +158,6 @@ pub fn resolve(mut inputs: Transmission, document: &Node, folder: &Path) -> Resu
     let angles = planet_angles(&mut inputs, document, &mut faults);
     bearings(&inputs, document, &mut faults);
     let (sensors, named_sensors) = sensors(&mut inputs, document, &mut faults);
-    let run = &inputs.run;
-    let steps = f64::from(run.steps_per_mesh_cycle) * f64::from(inputs.ring.teeth);
-    let passes = f64::from(run.settling_planet_passes) / f64::from(inputs.train.planets);
-    if steps * (f64::from(run.carrier_turns) + passes) > MOST_STEPS {
-        let message = format!("makes {:e} steps; at most {MOST_STEPS:e}", steps * f64::from(run.carrier_turns));
-        faults.push(document.fault("run.carrier_turns", message));
-    }
     let Some([sun, planet, ring]) = gears else { return Err(faults) };
     let train = PlanetaryTrain::new(&PlanetaryTrainSpec {
         sun,
@@ -155,14 +185,23 @@ pub fn resolve(mut inputs: Transmission, document: &Node, folder: &Path) -> Resu
     let speeds = speeds.map_err(|error| faults.push(document.fault("run.speed_rpm", error.to_string())));
     let equal = TAU / angles.len() as f64;
     let step = |pair: &[f64]| (pair[1] - pair[0] - equal).abs() < 1e-9;
-    let integrator = match inputs.numerics.integrator {
-        schema::Integrator::Newmark => Integrator::AverageAcceleration,
-        schema::Integrator::GeneralizedAlpha => {
-            Integrator::GeneralizedAlpha { spectral_radius: inputs.numerics.spectral_radius }
+    let sampling = speeds.as_ref().ok().map(|speeds| Sampling::new(&inputs, speeds.mesh_frequency));
+    if let Some(sampling) = &sampling {
+        let run = &inputs.run;
+        let turns = f64::from(run.carrier_turns) + f64::from(run.settling_planet_passes) / f64::from(inputs.train.planets);
+        let steps = sampling.steps_per_cycle() as f64 * f64::from(inputs.ring.teeth) * turns;
+        if steps > MOST_STEPS {
+            let message = format!("makes {steps:e} time steps; at most {MOST_STEPS:e}: record fewer turns, or a lower signals.band_hz");
+            faults.push(document.fault("run.carrier_turns", message));
         }
-    };
-    match speeds {
-        Ok(speeds) if faults.is_empty() => {
+        let fewest = sampling.steps_per_cycle();
+        if !(4..=100_000).contains(&fewest) {
+            let message = format!("makes {fewest} time steps of a mesh cycle; allowed: 4 to 100,000");
+            faults.push(document.fault("signals.band_hz", message));
+        }
+    }
+    match speeds.ok().zip(sampling) {
+        Some((speeds, sampling)) if faults.is_empty() => {
             let mut case = TransmissionCase {
                 train,
                 pairs,
@@ -174,7 +213,7 @@ pub fn resolve(mut inputs: Transmission, document: &Node, folder: &Path) -> Resu
                 bevel: stage,
                 housing,
                 severities,
-                integrator,
+                sampling,
                 inputs,
                 notes: Notes::default(),
             };

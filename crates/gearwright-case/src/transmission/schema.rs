@@ -4,7 +4,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::stage_schema::{Bevel, Housing};
-use crate::dynamics::schema::Integrator;
 use crate::spur_pair::schema::{
     BrokenCorner, Crack, Gear, Material, Mesh, Model, Numerics as Contact, Pit, Values, Wear,
 };
@@ -287,10 +286,6 @@ pub struct Run {
     /// Torque of the load on the carrier (N m).
     #[schemars(range(min = 1e-3, max = 1e9))]
     pub torque_n_m: f64,
-    /// Steps of time in a cycle of the planetary meshes.
-    #[serde(default = "steps")]
-    #[schemars(range(min = 8, max = 10000))]
-    pub steps_per_mesh_cycle: u32,
     /// Turns of the carrier recorded. A tooth of the sun meets the same tooth of the ring again after a few of them: `gearwright check` says how
     /// many.
     #[serde(default = "turns")]
@@ -300,10 +295,6 @@ pub struct Run {
     #[serde(default = "passes")]
     #[schemars(range(min = 0, max = 10000))]
     pub settling_planet_passes: u32,
-}
-
-fn steps() -> u32 {
-    50
 }
 
 fn turns() -> u32 {
@@ -326,11 +317,14 @@ pub struct Analysis {
     /// Load up to which tables are made, in mean loads of the mesh; beyond, they go on straight.
     #[schemars(range(min = 1.1, max = 100.0))]
     pub table_load_factor: f64,
+    /// Positions of a mesh cycle at which tables are computed; between them force is interpolated. Independent of the time step.
+    #[schemars(range(min = 8, max = 10000))]
+    pub table_positions: u32,
 }
 
 impl Default for Analysis {
     fn default() -> Self {
-        Self { model: Model::PlaneStress, table_tolerance: 5e-4, table_load_factor: 4.0 }
+        Self { model: Model::PlaneStress, table_tolerance: 5e-4, table_load_factor: 4.0, table_positions: 128 }
     }
 }
 
@@ -338,11 +332,11 @@ impl Default for Analysis {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Numerics {
-    /// Integration: "newmark" (average acceleration: no damping of its own) or "generalized-alpha" (damps what a step cannot follow).
-    pub integrator: Integrator,
-    /// Spectral radius of generalized-alpha at infinite frequency: 1 damps nothing, 0 all of it in one step.
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub spectral_radius: f64,
+    /// Time steps from one sample of the signals to the next. Default: from `signals.band_hz`, such that coupled modes up to the band are moved by less than
+    /// 0.02 % in frequency; the summary gives the number and the error that is left.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1, max = 1000))]
+    pub steps_per_sample: Option<u32>,
     /// Damping of the teeth in contact: force of approach velocity as this time (s) times the mesh stiffness.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub mesh_damping_s: f64,
@@ -350,7 +344,7 @@ pub struct Numerics {
 
 impl Default for Numerics {
     fn default() -> Self {
-        Self { integrator: Integrator::GeneralizedAlpha, spectral_radius: 0.8, mesh_damping_s: 2e-6 }
+        Self { steps_per_sample: None, mesh_damping_s: 2e-6 }
     }
 }
 
@@ -358,6 +352,10 @@ impl Default for Numerics {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Signals {
+    /// Band of all records (Hz): accelerations, forces and loads pass a low-pass of linear phase that is flat to this frequency, and are sampled at 2.56 times it or a
+    /// little more, a whole number of samples in a mesh cycle. Files and indicators hold nothing above it but the transition of the filter.
+    #[schemars(range(min = 1.0, max = 1e6))]
+    pub band_hz: f64,
     /// Most sideband pairs that the approximate difference signals lose: one signal for each number from 0 to this.
     #[schemars(range(min = 0, max = 100))]
     pub sideband_pairs: u32,
@@ -365,7 +363,7 @@ pub struct Signals {
 
 impl Default for Signals {
     fn default() -> Self {
-        Self { sideband_pairs: 5 }
+        Self { band_hz: 10e3, sideband_pairs: 5 }
     }
 }
 

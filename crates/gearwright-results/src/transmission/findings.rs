@@ -1,6 +1,6 @@
 //! What the runs of all states show.
 
-use planetary::engine::{NaturalMode, TransmissionRun};
+use planetary::engine::{Deviation, NaturalMode, TransmissionRun};
 
 /// Standard gravity (m/s^2), the unit of accelerations in results.
 pub const GRAVITY: f64 = 9.806_65;
@@ -39,8 +39,19 @@ pub struct Findings {
     pub mean_force: f64,
     /// Mean stiffness of the healthy meshes of sun and planets, and of planets and ring, at that force (N/m).
     pub mean_stiffness: [Option<f64>; 2],
+    /// What steps and transient leave in the records.
+    pub resolution: Resolution,
     /// Wall times.
     pub times: super::summary::Times,
+}
+
+/// What steps and transient leave in the records of the healthy state.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Resolution {
+    /// The steps.
+    pub steps: Option<Deviation>,
+    /// The transient; none where no planet pass is run before the record.
+    pub transient: Option<Deviation>,
 }
 
 /// One state.

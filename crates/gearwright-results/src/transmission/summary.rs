@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 
 use gear_geom::MeshSite;
 use hums::spectrum::{Spectrum, Window};
+use planetary::engine::{Deviation, STAGES};
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
@@ -70,8 +71,29 @@ pub fn summary(case: &TransmissionCase, findings: &Findings, times: Times) -> Js
         "meshes": meshes,
         "natural_frequencies_hz": findings.modes.iter().map(|mode| mode.frequency).collect::<Vec<_>>(),
         "housing_frequencies_hz": findings.housing.iter().map(|(f, _)| *f).collect::<Vec<_>>(),
+        "resolution": resolution(case, findings),
         "states": findings.states.iter().map(|state| state_summary(findings, state)).collect::<Vec<_>>(),
         "time_s": times,
+    })
+}
+
+/// Band, steps, and what they leave.
+fn resolution(case: &TransmissionCase, findings: &Findings) -> Json {
+    let sampling = &case.sampling;
+    let left = |deviation: Option<Deviation>| {
+        deviation.map(|left| json!({ "acceleration": left.acceleration, "mesh_force": left.mesh_force }))
+    };
+    json!({
+        "band_hz": sampling.band,
+        "samples_per_mesh_cycle": sampling.samples_per_cycle,
+        "sample_rate_hz": sampling.samples_per_cycle as f64 * case.speeds.mesh_frequency,
+        "steps_per_mesh_cycle": sampling.steps_per_cycle(),
+        "stages_per_step": STAGES,
+        "table_positions": case.inputs.analysis.table_positions,
+        "left_by_steps": left(findings.resolution.steps),
+        "left_by_transient": left(findings.resolution.transient),
+        "source": "root mean square of the change over that of the variation, in the band, healthy state: steps half as long over a stretch from equilibrium; a transient one \
+                   planet pass shorter",
     })
 }
 
@@ -80,7 +102,7 @@ fn state_summary(findings: &Findings, state: &State) -> Json {
         .shown(false)
         .map(|(k, sensor)| {
             let judged = &state.judged[k];
-            let (frequency, amplitude) = largest_line(&state.signals[k], state.run.time_step).unwrap_or_default();
+            let (frequency, amplitude) = largest_line(&state.signals[k], state.run.sample_time).unwrap_or_default();
             let of = |averaging: Averaging, signal: &str, name: &str| judged.value(averaging, signal, name);
             json!({
                 "sensor": sensor.name,
@@ -118,7 +140,7 @@ fn state_summary(findings: &Findings, state: &State) -> Json {
     json!({
         "state": state.name,
         "samples": state.run.len(),
-        "time_step_s": state.run.time_step,
+        "sample_time_s": state.run.sample_time,
         "change_from_period_to_period": state.change,
         "sensors": sensors,
         "meshes": meshes,
@@ -173,11 +195,22 @@ pub fn screen(case: &TransmissionCase, findings: &Findings, times: &Times) -> St
     if let Some(state) = findings.states.first() {
         let _ = writeln!(
             text,
-            "record     {} carrier turns, {} steps of {:.2} us",
+            "record     {} carrier turns, {} samples of {:.2} us, band {:.0} Hz, {} steps a mesh cycle",
             case.inputs.run.carrier_turns,
             state.run.len(),
-            state.run.time_step * 1e6
+            state.run.sample_time * 1e6,
+            case.sampling.band,
+            case.sampling.steps_per_cycle()
         );
+        let left = |deviation: Option<Deviation>| match deviation.map(|left| (left.acceleration, left.mesh_force)) {
+            Some((acceleration, force)) => {
+                let percent = |value: Option<f64>| value.map_or("-".into(), |value| format!("{:.2} %", 100.0 * value));
+                format!("{} of acceleration, {} of mesh force", percent(acceleration), percent(force))
+            }
+            None => "not measured".into(),
+        };
+        let resolution = &findings.resolution;
+        let _ = writeln!(text, "left       by steps {}; by transient {}", left(resolution.steps), left(resolution.transient));
     }
     let _ = writeln!(text, "\n{:<24} {:>10} {:>22} {:>10}", "state", "mesh kN", "least to greatest kN", "share");
     for state in findings.states.iter().take(LINES) {

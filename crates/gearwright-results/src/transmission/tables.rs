@@ -58,7 +58,7 @@ pub fn acceleration(
 ) -> Result<(), csv::Error> {
     let all: Vec<_> =
         sensors.iter().map(|(k, sensor)| (format!("{}_g", column(&sensor.name)), state.signals[*k].clone())).collect();
-    let start = |k: usize| vec![k as f64 * state.run.time_step, findings.turn(k)];
+    let start = |k: usize| vec![k as f64 * state.run.sample_time, findings.turn(k)];
     columns(path, &["time_s", "carrier_turn"], start, &all)
 }
 
@@ -75,7 +75,7 @@ pub fn difference(
     let exact =
         |k: usize, sensor: &Sensor| Some((format!("{}_g", column(&sensor.name)), state.judged[k].exact.clone()?));
     let all: Vec<_> = sensors.iter().filter_map(|(k, sensor)| exact(*k, sensor)).collect();
-    let start = |k: usize| vec![k as f64 * state.run.time_step, findings.turn(k)];
+    let start = |k: usize| vec![k as f64 * state.run.sample_time, findings.turn(k)];
     columns(path, &["time_s", "carrier_turn"], start, &all)
 }
 
@@ -143,7 +143,7 @@ pub fn meshes(path: &Path, findings: &Findings, state: &State) -> Result<(), csv
             ]
         })
         .collect();
-    let start = |k: usize| vec![k as f64 * state.run.time_step, findings.turn(k)];
+    let start = |k: usize| vec![k as f64 * state.run.sample_time, findings.turn(k)];
     columns(path, &["time_s", "carrier_turn"], start, &all)
 }
 

@@ -1,9 +1,10 @@
-//! Force laws of all meshes in all states, from contact mechanics. Sound teeth are all alike, and meshes in phase share their positions, so a table of
-//! each pair of gears serves all planets, and curves around a damaged tooth all planets that meet it.
+//! Force laws of all meshes in all states, from contact mechanics. Sound teeth are all alike, so a table of each pair of gears serves all planets, and curves
+//! around a damaged tooth all planets that meet it. Positions of tables are their own, not those of time steps.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use anyhow::{Context, bail};
+use fecm::statics::PairModel;
 use gear_geom::{Damage, Member, MeshSite, TrainTooth};
 use planetary::mesh::{
     BevelSlices, DamageWindow, DamagedTooth, MeshLaw, MeshTable, MeshTableData, SlicedMesh, TableOptions, virtual_table,
@@ -16,9 +17,6 @@ use gearwright_case::TransmissionCase;
 use gearwright_case::transmission::bevel::BevelStage;
 use gearwright_case::transmission::damage::Severity;
 
-/// Offsets that differ by less (mesh cycles) share their tables.
-const SAME_PHASE: f64 = 1e-9;
-
 /// Laws of the healthy state, then of every severity.
 ///
 /// # Errors
@@ -29,7 +27,7 @@ pub fn laws(case: &TransmissionCase, cache: &Cache, observer: &dyn RunObserver) 
         .collect::<anyhow::Result<Vec<_>>>()?
         .try_into()
         .map_err(|_| anyhow::anyhow!("a train has two kinds of meshes"))?;
-    let coast = [&sun, &ring].map(|site| site.tables[0].1.clone() as Arc<dyn MeshLaw>);
+    let coast = [&sun, &ring].map(|site| site.sound.clone() as Arc<dyn MeshLaw>);
     let bevel = case.bevel.as_ref().map(|stage| bevel_law(case, stage, cache, observer)).transpose()?;
     let none = Severity { label: String::new(), damage: Vec::new() };
     std::iter::once(&none)
@@ -52,6 +50,7 @@ fn bevel_law(
     let factor = case.inputs.analysis.table_load_factor;
     let options = TableOptions {
         tolerance: case.inputs.analysis.table_tolerance,
+        positions_per_cycle: case.inputs.analysis.table_positions as usize,
         ..TableOptions::up_to(factor * bevel_force(case, stage))
     };
     let table: MeshTable = cache.get("bevel", &format!("{:?}", (&stage.pair, options)), || {
@@ -62,15 +61,45 @@ fn bevel_law(
     Ok(Arc::new(SlicedMesh::bevel(&stage.pair, Arc::new(table), &slices).context("the bevel stage")?))
 }
 
+fn name(site: MeshSite) -> &'static str {
+    match site {
+        MeshSite::SunPlanet => "sun-planet pair",
+        MeshSite::PlanetRing => "planet-ring pair",
+    }
+}
+
+fn stopped(observer: &dyn RunObserver) -> anyhow::Result<()> {
+    if observer.is_cancelled() {
+        bail!("stopped; nothing was written");
+    }
+    Ok(())
+}
+
+/// The contact model of sound gears, made once it is needed.
+fn made<'a>(
+    model: &'a OnceLock<PairModel>,
+    case: &TransmissionCase,
+    site: MeshSite,
+) -> anyhow::Result<&'a PairModel> {
+    if let Some(model) = model.get() {
+        return Ok(model);
+    }
+    let options = &case.pairs[usize::from(site == MeshSite::PlanetRing)];
+    let found = PairModel::new(case.train.pair(site), options)
+        .with_context(|| format!("the {} cannot be modelled", name(site)))?;
+    Ok(model.get_or_init(|| found))
+}
+
 /// Meshes of sun and planets, or of planets and ring.
 struct Site<'a> {
     case: &'a TransmissionCase,
     site: MeshSite,
     cache: &'a Cache,
     observer: &'a dyn RunObserver,
-    model: std::sync::OnceLock<fecm::statics::PairModel>,
-    /// Tables of sound teeth by the mesh cycle of their first position.
-    tables: Vec<(f64, Arc<MeshTable>)>,
+    options: TableOptions,
+    model: OnceLock<PairModel>,
+    /// Table of sound teeth.
+    sound: Arc<MeshTable>,
 }
 
 impl<'a> Site<'a> {
@@ -80,92 +109,36 @@ impl<'a> Site<'a> {
         cache: &'a Cache,
         observer: &'a dyn RunObserver,
     ) -> anyhow::Result<Self> {
-        let model = std::sync::OnceLock::new();
-        let mut own = Self { case, site, cache, observer, model, tables: Vec::new() };
-        for planet in 0..case.train.planets() {
-            let origin = own.origin(planet)?;
-            if own.table(origin).is_none() {
-                let made = own.sound(origin)?;
-                own.tables.push((origin, Arc::new(made)));
-            }
-        }
-        Ok(own)
-    }
-
-    /// Mesh cycle of the first position of a planet's table: within the first step, so that steps of the transmission meet positions.
-    fn origin(&self, planet: usize) -> anyhow::Result<f64> {
-        let steps = f64::from(self.case.inputs.run.steps_per_mesh_cycle);
-        let offset = self.case.train.mesh_offset(self.site, planet)? * steps;
-        let part = offset - offset.floor();
-        Ok(if part > 1.0 - SAME_PHASE { 0.0 } else { part / steps })
-    }
-
-    /// The table of sound teeth whose positions are those of an origin but for rounding, and its own origin.
-    fn table(&self, origin: f64) -> Option<(f64, &Arc<MeshTable>)> {
-        let near = |(own, _): &&(f64, Arc<MeshTable>)| (own - origin).abs() < SAME_PHASE;
-        self.tables.iter().find(near).map(|(own, table)| (*own, table))
-    }
-
-    fn options(&self, origin: f64) -> TableOptions {
-        let analysis = &self.case.inputs.analysis;
-        TableOptions {
-            positions_per_cycle: self.case.inputs.run.steps_per_mesh_cycle as usize,
-            origin,
+        let model = OnceLock::new();
+        let (index, name) = (usize::from(site == MeshSite::PlanetRing), name(site));
+        let analysis = &case.inputs.analysis;
+        let options = TableOptions {
+            positions_per_cycle: analysis.table_positions as usize,
             tolerance: analysis.table_tolerance,
-            ..TableOptions::up_to(analysis.table_load_factor * self.case.mean_force())
-        }
-    }
-
-    /// The contact model of sound gears, made once it is needed.
-    fn model(&self) -> anyhow::Result<&fecm::statics::PairModel> {
-        if let Some(model) = self.model.get() {
-            return Ok(model);
-        }
-        let options = &self.case.pairs[self.index()];
-        let model = fecm::statics::PairModel::new(self.case.train.pair(self.site), options)
-            .with_context(|| format!("the {} cannot be modelled", self.name()))?;
-        Ok(self.model.get_or_init(|| model))
-    }
-
-    fn index(&self) -> usize {
-        usize::from(self.site == MeshSite::PlanetRing)
-    }
-
-    fn name(&self) -> &'static str {
-        ["sun-planet pair", "planet-ring pair"][self.index()]
-    }
-
-    fn stopped(&self) -> anyhow::Result<()> {
-        if self.observer.is_cancelled() {
-            bail!("stopped; nothing was written");
-        }
-        Ok(())
-    }
-
-    /// Table of sound teeth.
-    fn sound(&self, origin: f64) -> anyhow::Result<MeshTable> {
-        self.stopped()?;
-        let options = self.options(origin);
-        let key = format!("{:?}", (self.case.train.pair(self.site), &self.case.pairs[self.index()], options));
-        self.cache.get("mesh", &key, || {
-            self.observer.stage(&format!("contact of the {}", self.name()));
-            let made = MeshTable::from_contact(self.model()?, &options, &AsObserver(self.observer));
-            made.with_context(|| format!("the contact of the {} cannot be solved", self.name()))
-        })
+            ..TableOptions::up_to(analysis.table_load_factor * case.mean_force())
+        };
+        stopped(observer)?;
+        let pair = case.train.pair(site);
+        let key = format!("{:?}", (pair, &case.pairs[index], options));
+        let sound = cache.get("mesh", &key, || {
+            observer.stage(&format!("contact of the {name}"));
+            let made = MeshTable::from_contact(made(&model, case, site)?, &options, &AsObserver(observer));
+            made.with_context(|| format!("the contact of the {name} cannot be solved"))
+        })?;
+        Ok(Self { case, site, cache, observer, options, model, sound: Arc::new(sound) })
     }
 
     /// Table with one damaged tooth, in pair 0 of the mesh.
-    fn damaged(&self, origin: f64, member: Member, damage: &[Damage], label: &str) -> anyhow::Result<MeshTable> {
-        self.stopped()?;
-        let options = self.options(origin);
+    fn damaged(&self, member: Member, damage: &[Damage], label: &str) -> anyhow::Result<MeshTable> {
+        stopped(self.observer)?;
+        let (options, name) = (self.options, name(self.site));
         let tooth = DamagedTooth { member, pair: 0, damage: damage.to_vec() };
-        let key = format!("{:?}", (self.case.train.pair(self.site), &self.case.pairs[self.index()], options, &tooth));
+        let key = (self.case.train.pair(self.site), &self.case.pairs[usize::from(self.site == MeshSite::PlanetRing)], options, &tooth);
         self.cache.get("damage", &key, || {
-            self.observer.stage(&format!("contact of the {}, {label}", self.name()));
-            let (_, sound) = self.table(origin).context("the table of sound teeth is missing")?;
-            let made =
-                sound.with_damage(self.model()?, std::slice::from_ref(&tooth), &options, &AsObserver(self.observer));
-            made.with_context(|| format!("the contact of the {} with {label} cannot be solved", self.name()))
+            self.observer.stage(&format!("contact of the {name}, {label}"));
+            let (model, teeth) = (made(&self.model, self.case, self.site)?, std::slice::from_ref(&tooth));
+            let made = self.sound.with_damage(model, teeth, &options, &AsObserver(self.observer));
+            made.with_context(|| format!("the contact of the {name} with {label} cannot be solved"))
         })
     }
 
@@ -174,8 +147,6 @@ impl<'a> Site<'a> {
         let teeth = teeth(severity);
         (0..self.case.train.planets())
             .map(|planet| {
-                let (origin, sound) =
-                    self.table(self.origin(planet)?).context("the table of sound teeth is missing")?;
                 let mut windows = Vec::new();
                 for (tooth, damage) in &teeth {
                     let Some((pair, _)) = self.case.train.pairs_of_tooth(self.site, planet, *tooth)? else { continue };
@@ -183,13 +154,13 @@ impl<'a> Site<'a> {
                     if damage.is_empty() {
                         continue;
                     }
-                    let table = self.damaged(origin, member, &damage, &severity.label)?;
+                    let table = self.damaged(member, &damage, &severity.label)?;
                     windows.extend(table.data().windows.iter().cloned().map(|window| DamageWindow { pair, ..window }));
                 }
                 if windows.is_empty() {
-                    return Ok(sound.clone() as Arc<dyn MeshLaw>);
+                    return Ok(self.sound.clone() as Arc<dyn MeshLaw>);
                 }
-                let data = MeshTableData { windows, ..sound.data().clone() };
+                let data = MeshTableData { windows, ..self.sound.data().clone() };
                 let table =
                     MeshTable::new(data).with_context(|| format!("{}, planet {}", severity.label, planet + 1))?;
                 Ok(Arc::new(table) as Arc<dyn MeshLaw>)

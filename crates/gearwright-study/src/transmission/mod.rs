@@ -4,6 +4,7 @@ pub mod cache;
 mod housing;
 mod laws;
 mod model;
+mod resolution;
 mod signals;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -15,12 +16,14 @@ use gear_geom::TrainTooth;
 use gearwright_case::TransmissionCase;
 use gearwright_case::lumped_pair::resolve::HEALTHY;
 use gearwright_results::transmission::summary::Times;
-use gearwright_results::transmission::{Findings, Sensor};
+use gearwright_results::transmission::{Findings, Resolution, Sensor};
 use planetary::elastic::ElasticBody;
-use planetary::engine::{Load, NaturalMode, RunRequest, Start, Transmission, TransmissionRun, Turning};
+use planetary::engine::{
+    Band, Load, NaturalMode, RunRequest, STAGES, Start, Transmission, TransmissionRun, Turning,
+};
 use rayon::prelude::*;
 
-use super::RunObserver;
+use super::{AsObserver, RunObserver};
 use cache::Cache;
 use laws::laws;
 use model::{Laws, mean_stiffness};
@@ -61,12 +64,15 @@ pub fn compute(case: &TransmissionCase, cache: &Cache, observer: &dyn RunObserve
     observer.stage("vibration of all states (steps)");
     let clock = Instant::now();
     let runs = runs(case, &states, observer)?;
+    observer.stage("what steps and transient leave");
+    let resolution = resolution::measure(case, &states[0].1, &request(case), &runs[0].1, &AsObserver(observer))?;
     times.vibration = clock.elapsed().as_secs_f64();
     stopped(observer)?;
 
     observer.stage("signals and indicators");
     let clock = Instant::now();
     let mut findings = findings(case, &laws[0], runs, modes, parts, housing.as_ref())?;
+    findings.resolution = resolution;
     times.signals = clock.elapsed().as_secs_f64();
     findings.times = times;
     Ok(findings)
@@ -116,7 +122,7 @@ fn runs(
     observer: &dyn RunObserver,
 ) -> anyhow::Result<Vec<(String, TransmissionRun)>> {
     let request = request(case);
-    let total = states.len() * (request.settle_steps + request.record_steps);
+    let total = states.len() * (request.settle_steps + request.samples * case.sampling.steps_per_sample);
     let together = Together { observer, done: AtomicUsize::new(0), total };
     let runs: Vec<anyhow::Result<_>> = states
         .par_iter()
@@ -128,22 +134,24 @@ fn runs(
     runs.into_iter().collect()
 }
 
-/// The record begins with the first planet at its angle of the start, so the transient is run before.
+/// The record begins with the first planet at its angle of the start, so the transient is run before: some planet passes, at least what the filter of the band reaches back.
 fn request(case: &TransmissionCase) -> RunRequest {
-    let run = &case.inputs.run;
-    let steps = run.steps_per_mesh_cycle as usize;
+    let (run, sampling) = (&case.inputs.run, &case.sampling);
+    let steps = sampling.steps_per_cycle();
+    let band = Band { frequency: sampling.band, steps_per_sample: sampling.steps_per_sample };
+    let lead = band.lead_steps(1.0 / (case.speeds.mesh_frequency * steps as f64));
     let turn = case.inputs.ring.teeth as usize * steps;
-    let settle_steps = run.settling_planet_passes as usize * turn / case.train.planets();
+    let settle_steps = (run.settling_planet_passes as usize * turn / case.train.planets()).max(lead);
     RunRequest {
         turning: Turning::Steady { carrier_speed: case.speeds.carrier, steps_per_cycle: steps },
         output_torque: run.torque_n_m,
-        // the first step recorded is the one after
-        travelled: -((settle_steps + 1) as f64) / steps as f64,
+        travelled: -(settle_steps as f64) / steps as f64,
         start: Start::Equilibrium,
         settle_steps,
-        record_steps: run.carrier_turns as usize * turn,
+        samples: run.carrier_turns as usize * case.inputs.ring.teeth as usize * sampling.samples_per_cycle,
+        band: Some(band),
         record_motion: false,
-        integrator: case.integrator,
+        stages: STAGES,
     }
 }
 
@@ -154,11 +162,12 @@ fn findings(
     modes: Vec<NaturalMode>,
     parts: Vec<String>,
     housing: Option<&ElasticBody>,
+    resolution: Resolution,
 ) -> anyhow::Result<Findings> {
-    let (ring, steps) = (case.inputs.ring.teeth, case.inputs.run.steps_per_mesh_cycle as usize);
-    let periods = periods(ring, case.train.planets(), case.equally_spaced, steps);
+    let (ring, samples) = (case.inputs.ring.teeth, case.sampling.samples_per_cycle);
+    let periods = periods(ring, case.train.planets(), case.equally_spaced, samples);
     let judge = Judge::new(&periods, case.inputs.signals.sideband_pairs as usize)?;
-    let turn = ring as usize * steps;
+    let turn = ring as usize * samples;
     // with everything on the sun's shaft alike the ring sees a planet pass repeat, otherwise all must return
     let on_ring = |tooth: &TrainTooth| matches!(tooth, TrainTooth::Ring(_));
     let alike = case.bevel.is_none() && case.severities.iter().flat_map(|s| &s.damage).all(|(t, _)| on_ring(t));
@@ -186,6 +195,7 @@ fn findings(
         mean_force: force,
         mean_stiffness: [&healthy.sun, &healthy.ring]
             .map(|laws| laws.first().map(|law| mean_stiffness(law.as_ref(), force))),
+        resolution: Resolution::default(),
         times: Times::default(),
     })
 }

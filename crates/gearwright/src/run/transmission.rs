@@ -64,7 +64,7 @@ fn write_state(
 ) -> anyhow::Result<()> {
     let suffix = state.suffix();
     let file = |name: &str| folder.file(&format!("{name}{suffix}.csv"));
-    let (time_step, mesh_frequency) = (state.run.time_step, findings.mesh_frequency);
+    let (time_step, mesh_frequency) = (state.run.sample_time, findings.mesh_frequency);
     tables::meshes(&file("meshes"), findings, state)?;
     if sensors.is_empty() {
         return Ok(());

@@ -220,7 +220,7 @@ impl RunRequest {
     ///
     /// # Errors
     /// The first that is not allowed.
-    pub fn validate(&self) -> Checked {
+    pub(super) fn validate(&self, time_step: f64) -> Checked {
         match self.turning {
             Turning::Steady { carrier_speed, steps_per_cycle } => {
                 positive(|| "speed of the carrier".into(), carrier_speed)?;
@@ -232,7 +232,10 @@ impl RunRequest {
         }
         not_negative(|| "output torque".into(), self.output_torque)?;
         finite(|| "mesh cycles travelled".into(), &[self.travelled])?;
-        Ok(self.integrator.validate()?)
+        let stages = self.stages as f64;
+        PlanetaryError::check((1..=4).contains(&self.stages), || "stages of a step".into(), stages, "1 to 4")?;
+        let Some(band) = &self.band else { return Ok(()) };
+        band.check(time_step)
     }
 }
 
@@ -242,8 +245,6 @@ impl TransmissionState {
         for (what, values, needed) in [
             ("position", &self.position, coordinates),
             ("velocity", &self.velocity, coordinates),
-            ("acceleration", &self.acceleration, coordinates),
-            ("force", &self.force, coordinates),
             ("connection", &self.connection, connections),
         ] {
             let what = || format!("{what} of the state to start from");

@@ -26,20 +26,38 @@ pub(super) struct Touch<'a> {
 impl Touch<'_> {
     /// Force and its derivative by the approach.
     pub fn force(&self, x: f64) -> (f64, f64) {
-        let flank = self.flank;
-        let answer = flank.law.response(self.cycle, x - flank.backlash);
+        let press = self.flank.press(self.cycle, x, self.rate * x - self.history);
+        (press.force, press.by_approach + self.rate * press.by_speed)
+    }
+}
+
+/// Force of flanks and its derivatives.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Press {
+    pub force: f64,
+    pub by_approach: f64,
+    pub by_speed: f64,
+}
+
+impl Flank {
+    /// Force at an approach without backlash and a speed of approach.
+    pub fn press(&self, cycle: f64, x: f64, speed: f64) -> Press {
+        let answer = self.law.response(cycle, x - self.backlash);
         let (f, slope) = (answer.force, answer.stiffness);
-        if flank.damping == 0.0 || self.rate == 0.0 || f <= 0.0 {
-            return (f, slope);
+        if self.damping == 0.0 || f <= 0.0 {
+            return Press { force: f, by_approach: slope, by_speed: 0.0 };
         }
-        let speed = self.rate * x - self.history;
         let (share, share_slope) =
-            if f < flank.damping_force { (f / flank.damping_force, slope / flank.damping_force) } else { (1.0, 0.0) };
-        let total = f + flank.damping * share * speed;
-        if total > 0.0 {
-            (total, slope + flank.damping * (share_slope * speed + share * self.rate))
+            if f < self.damping_force { (f / self.damping_force, slope / self.damping_force) } else { (1.0, 0.0) };
+        let force = f + self.damping * share * speed;
+        if force > 0.0 {
+            Press {
+                force,
+                by_approach: slope + self.damping * share_slope * speed,
+                by_speed: self.damping * share,
+            }
         } else {
-            (0.0, 0.0)
+            Press::default()
         }
     }
 }
@@ -62,11 +80,11 @@ const MOST_ROUNDS: usize = 20;
 const SWEEPS: usize = 10;
 const BISECTIONS: usize = 120;
 /// Residual wanted, relative to the displacements whose differences the approaches are: their rounding.
-const TOLERANCE: f64 = 1e-13;
+pub(super) const TOLERANCE: f64 = 1e-13;
 /// A full step is taken where it leaves no more than this part of the residual.
 const NEARER: f64 = 0.5;
 /// Residual, relative to the same, below which one that no longer falls is rounding.
-const ROUNDING: f64 = 1e-9;
+pub(super) const ROUNDING: f64 = 1e-9;
 /// Residual, relative to the terms it is a sum of, that is their rounding.
 const CANCELLATION: f64 = 1e-14;
 /// Smallest pivot of `1 + W K` against its diagonal: it cannot be small, this only refuses numbers out of range.

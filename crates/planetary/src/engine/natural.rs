@@ -11,7 +11,7 @@ use nalgebra::DMatrix;
 use super::contact::Touch;
 use super::request::NaturalMode;
 use super::rows::RIGID;
-use super::step::Placed;
+use super::placed::Placed;
 use super::transmission::{Load, Transmission};
 use crate::error::PlanetaryError;
 

@@ -2,8 +2,7 @@
 
 use std::time::Duration;
 
-use fecm::dynamics::Integrator;
-
+use super::band::Band;
 use super::spec::BodyId;
 
 /// How the transmission turns.
@@ -33,12 +32,8 @@ pub struct TransmissionState {
     pub position: Vec<f64>,
     /// Their rates.
     pub velocity: Vec<f64>,
-    /// And accelerations; a run from accelerations that do not fit the forces loses an order of accuracy.
-    pub acceleration: Vec<f64>,
-    /// Forces of connections (N, N m): bearings, then meshes.
+    /// Forces of connections (N, N m): bearings, then meshes. Where the next step begins to look for those of the meshes.
     pub connection: Vec<f64>,
-    /// All forces on the coordinates, those of inertia, elasticity and damping of bodies left out.
-    pub force: Vec<f64>,
 }
 
 /// How a run begins.
@@ -62,17 +57,22 @@ pub struct RunRequest {
     pub travelled: f64,
     /// Start.
     pub start: Start,
-    /// Steps before the record begins.
+    /// Steps before the record begins; with a band, steps to its first sample, at least [`Band::lead_steps`].
     pub settle_steps: usize,
-    /// Steps recorded.
-    pub record_steps: usize,
+    /// Samples recorded: steps, or samples of the band.
+    pub samples: usize,
+    /// Band of the record. Without, the values at the end of every step are recorded as they are, whatever they hold above half the rate of the steps.
+    pub band: Option<Band>,
     /// Whether to record the coordinates of bodies.
     pub record_motion: bool,
-    /// Time integration.
-    pub integrator: Integrator,
+    /// Stages of a step, 1 to 4: the order of the method is twice as high ([`STAGES`] unless there is a reason).
+    pub stages: usize,
 }
 
-/// A quantity recorded at every step.
+/// Stages of a step that cost least for a given error of the dissertation's transmission.
+pub const STAGES: usize = 3;
+
+/// A quantity recorded sample by sample.
 pub type Series = Vec<f64>;
 
 /// Record of a mesh.
@@ -126,7 +126,7 @@ pub struct TransmissionStats {
     pub steps: usize,
     /// Newton iterations over meshes.
     pub newton_iterations: usize,
-    /// Steps at which Newton's method had to go back along its way.
+    /// Steps taken with one stage, because Newton's method over the stages did not converge.
     pub fallbacks: usize,
     /// Worst residual of a mesh: approach not accounted for (m).
     pub worst_residual: f64,
@@ -137,9 +137,9 @@ pub struct TransmissionStats {
 /// A run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TransmissionRun {
-    /// s.
-    pub time_step: f64,
-    /// Step of the first record.
+    /// Time between samples (s).
+    pub sample_time: f64,
+    /// Step of the first sample.
     pub first_step: i64,
     /// Records of sensors.
     pub sensors: Vec<SensorRecord>,
@@ -156,7 +156,7 @@ pub struct TransmissionRun {
 }
 
 impl TransmissionRun {
-    /// Steps recorded.
+    /// Samples recorded.
     #[must_use]
     pub fn len(&self) -> usize {
         self.meshes.first().map_or(0, |mesh| mesh.force.len())
@@ -168,26 +168,76 @@ impl TransmissionRun {
         self.len() == 0
     }
 
-    /// How far the run is from repeating after `period` steps: root mean square of the change between its last two periods over that of the
+    /// How far the run is from repeating after `period` samples: root mean square of the change between its last two periods over that of the
     /// variation in the last, over all sensors together, or over mesh forces where there are none. `None` where fewer than two periods are recorded.
     #[must_use]
     pub fn periodic_change(&self, period: usize) -> Option<f64> {
-        let series: Vec<&Series> = if self.sensors.is_empty() {
-            self.meshes.iter().map(|mesh| &mesh.force).collect()
-        } else {
-            self.sensors.iter().map(|sensor| &sensor.acceleration).collect()
-        };
         if period == 0 || self.len() < 2 * period {
             return None;
         }
-        let (mut change, mut variation) = (0.0, 0.0);
-        for values in series {
-            let (before, last) = values[values.len() - 2 * period..].split_at(period);
-            let mean = last.iter().sum::<f64>() / period as f64;
-            change += before.iter().zip(last).map(|(a, b)| (b - a) * (b - a)).sum::<f64>();
-            variation += last.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
+        let last = self.len() - 2 * period;
+        let halves = |values: &'_ Series| (values[last..last + period].to_vec(), values[last + period..].to_vec());
+        let pairs = |all: Vec<&Series>| relative(all.into_iter().map(halves));
+        pairs(self.accelerations()).or_else(|| pairs(self.forces()))
+    }
+
+    /// How far the first samples of two runs of a transmission are from each other.
+    #[must_use]
+    pub fn deviation(&self, other: &Self, samples: usize) -> Option<Deviation> {
+        if samples == 0 || self.len() < samples || other.len() < samples {
+            return None;
         }
-        Some((change / variation.max(f64::MIN_POSITIVE)).sqrt())
+        let pairs = |own: Vec<&Series>, other: Vec<&Series>| {
+            relative(own.into_iter().zip(other).map(|(a, b)| (a[..samples].to_vec(), b[..samples].to_vec())))
+        };
+        Some(Deviation {
+            acceleration: pairs(self.accelerations(), other.accelerations()),
+            mesh_force: pairs(self.forces(), other.forces()),
+        })
+    }
+
+    fn accelerations(&self) -> Vec<&Series> {
+        self.sensors.iter().map(|sensor| &sensor.acceleration).collect()
+    }
+
+    fn forces(&self) -> Vec<&Series> {
+        self.meshes.iter().map(|mesh| &mesh.force).collect()
+    }
+}
+
+/// How far two runs are from each other: root mean square of the difference over that of the variation about the mean.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Deviation {
+    /// Of all sensors together; none without sensors.
+    pub acceleration: Option<f64>,
+    /// Of the forces of all meshes together.
+    pub mesh_force: Option<f64>,
+}
+
+/// Root mean square of all differences over that of the variation of the second of each pair; none without pairs.
+fn relative(pairs: impl Iterator<Item = (Series, Series)>) -> Option<f64> {
+    let (mut change, mut variation, mut count) = (0.0, 0.0, 0);
+    for (before, last) in pairs {
+        let mean = last.iter().sum::<f64>() / last.len().max(1) as f64;
+        change += before.iter().zip(&last).map(|(a, b)| (b - a) * (b - a)).sum::<f64>();
+        variation += last.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
+        count += 1;
+    }
+    (count > 0).then(|| (change / variation.max(f64::MIN_POSITIVE)).sqrt())
+}
+
+impl RunRequest {
+    /// The same from the same start with steps half as long; `lead` steps of the longer lie before the first sample.
+    #[must_use]
+    pub fn halved(&self, lead: usize) -> Self {
+        let turning = match self.turning {
+            Turning::Steady { carrier_speed, steps_per_cycle } => {
+                Turning::Steady { carrier_speed, steps_per_cycle: 2 * steps_per_cycle }
+            }
+            Turning::Standing { time_step } => Turning::Standing { time_step: 0.5 * time_step },
+        };
+        let band = self.band.map(|band| Band { steps_per_sample: 2 * band.steps_per_sample, ..band });
+        Self { turning, band, settle_steps: 2 * lead, ..self.clone() }
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Every connection, a spring of a bearing or the flanks of a mesh, knows one scalar `d = J q`: how far two bodies move against each other along one
 //! direction. A row has up to two parts on rigid bodies and one on the housing. Parts that turn with the carrier are constant in its axes:
-//! `(n, (P - X) x n)` turned about `z` by its angle; their rate is that of the turning.
+//! `(n, (P - X) x n)` turned about `z` by its angle.
 
 use super::dense::{cross, minus};
 
@@ -39,15 +39,6 @@ impl Part {
         let [x, y, z, rx, ry, rz] = self.row;
         [cos * x - sin * y, sin * x + cos * y, z, cos * rx - sin * ry, sin * rx + cos * ry, rz]
     }
-
-    /// Derivative by the carrier's angle.
-    pub fn derivative(&self, (cos, sin): (f64, f64)) -> [f64; RIGID] {
-        if !self.turning {
-            return [0.0; RIGID];
-        }
-        let [x, y, _, rx, ry, _] = self.row;
-        [-sin * x - cos * y, cos * x - sin * y, 0.0, -sin * rx - cos * ry, cos * rx - sin * ry, 0.0]
-    }
 }
 
 /// Displacement of the point of a line of action that the ring seat carries.
@@ -66,13 +57,13 @@ pub(super) struct SeatPart {
 }
 
 impl SeatPart {
-    /// Coefficients of the seat's radial and tangential harmonics at a carrier angle, and their derivatives by it.
-    pub fn coefficients(&self, carrier: f64, harmonics: usize, values: &mut [f64], derivatives: &mut [f64]) {
+    /// Coefficients of the seat's radial and tangential harmonics at a carrier angle.
+    pub fn coefficients(&self, carrier: f64, harmonics: usize, values: &mut [f64]) {
         let t = self.angle + carrier;
         let on_tangential = self.tangential * self.radius_ratio;
         let on_slope = -self.tangential * (self.radius_ratio - 1.0);
         let half = 2 * harmonics + 1;
-        (values[0], values[half], derivatives[0], derivatives[half]) = (self.radial, on_tangential, 0.0, 0.0);
+        (values[0], values[half]) = (self.radial, on_tangential);
         for n in 1..=harmonics {
             let order = n as f64;
             let (sin, cos) = (order * t).sin_cos();
@@ -80,12 +71,8 @@ impl SeatPart {
             // u_r = a cos + b sin, u_r' = n (b cos - a sin)
             values[c] = self.radial * cos - on_slope * order * sin;
             values[s] = self.radial * sin + on_slope * order * cos;
-            derivatives[c] = order * (-self.radial * sin - on_slope * order * cos);
-            derivatives[s] = order * (self.radial * cos - on_slope * order * sin);
             values[half + c] = on_tangential * cos;
             values[half + s] = on_tangential * sin;
-            derivatives[half + c] = -order * on_tangential * sin;
-            derivatives[half + s] = order * on_tangential * cos;
         }
     }
 }

@@ -45,12 +45,6 @@ impl Inertia {
         let rotation = |i: usize| (0..3).map(|j| self.tensor[i][j] * x[3 + j]).sum::<f64>();
         [self.mass * x[0], self.mass * x[1], self.mass * x[2], rotation(0), rotation(1), rotation(2)]
     }
-
-    /// Gyroscopic moments of a vector of rates, per speed of the carrier.
-    pub fn gyroscopic_times(&self, x: [f64; RIGID]) -> [f64; RIGID] {
-        let moment = |i: usize| (0..3).map(|j| self.gyroscopic[i][j] * x[3 + j]).sum::<f64>();
-        [0.0, 0.0, 0.0, moment(0), moment(1), moment(2)]
-    }
 }
 
 /// Spring and damper of a bilateral connection.
@@ -72,6 +66,13 @@ pub(super) struct Flank {
     pub damping_force: f64,
     /// What the approach lacks.
     pub backlash: f64,
+}
+
+impl Flank {
+    /// Its mesh cycle with mesh cycles of the planetary stage travelled.
+    pub fn cycle_at(&self, travelled: f64) -> f64 {
+        self.cycle_offset + self.cycle_rate * travelled
+    }
 }
 
 /// Rows of a bearing; none where nothing holds.

@@ -1,11 +1,12 @@
 //! A transmission made ready: rest, natural modes, motion.
 
 use super::natural::square;
-use super::request::{Equilibrium, RunRequest, TransmissionRun, TransmissionState};
+use super::request::{Equilibrium, RunRequest, TransmissionRun, TransmissionState, Turning};
 use super::rows::RIGID;
 use super::run::Runner;
 use super::spec::{BodyId, TransmissionSpec};
-use super::step::{History, Operator, Place, Stepped, step};
+use super::placed::Place;
+use super::rest::{Operator, Stepped, step};
 use super::system::System;
 use crate::error::PlanetaryError;
 use fecm::statics::Observer;
@@ -71,6 +72,17 @@ impl Transmission {
         &self.system.ids
     }
 
+    /// Length of a step (s).
+    #[must_use]
+    pub fn time_step(&self, turning: &Turning) -> f64 {
+        match *turning {
+            Turning::Steady { carrier_speed, steps_per_cycle } => {
+                2.0 * std::f64::consts::PI / self.system.ring_teeth / carrier_speed / steps_per_cycle as f64
+            }
+            Turning::Standing { time_step } => time_step,
+        }
+    }
+
     pub(super) fn place(&self, travelled: f64) -> Place {
         Place { angle: 2.0 * std::f64::consts::PI * (travelled / self.system.ring_teeth), travelled }
     }
@@ -106,8 +118,7 @@ impl Transmission {
             let mut right = self.masses_times(position);
             right.iter_mut().for_each(|value| *value *= rho);
             right.iter_mut().zip(&external).for_each(|(value, force)| *value += force);
-            let history = History { load: &right, velocity: &still, expected: &still, speed: 0.0, forces };
-            step(system, &Operator::resting(system, rho), place, &history)
+            step(system, &Operator::new(system, rho), place, &right, forces)
         };
         let whole = self.unit_mass(&[&external[..], &still[system.rigid()..]].concat());
         let size = square(&whole).sqrt();
@@ -134,7 +145,7 @@ impl Transmission {
             if imbalance <= wanted * size {
                 let [first, last] = POLISH;
                 let next = proximal(first, &position, &forces)?;
-                return Ok(self.at_rest(proximal(last, &next.position, &next.forces)?, &external, iteration));
+                return Ok(self.at_rest(proximal(last, &next.position, &next.forces)?, iteration));
             }
             rho = (rho * factor).max(least);
         }
@@ -142,13 +153,10 @@ impl Transmission {
         Err(PlanetaryError::NoEquilibrium { cycle: load.travelled, iterations: MOST_PROXIMAL, imbalance: relative })
     }
 
-    fn at_rest(&self, found: Stepped, external: &[f64], iterations: usize) -> Equilibrium {
+    fn at_rest(&self, found: Stepped, iterations: usize) -> Equilibrium {
         let system = &self.system;
         let springs = system.springs.len();
         let flank = |index: usize| found.forces[springs + index];
-        let mut force = found.generalised;
-        force.iter_mut().zip(external).for_each(|(force, external)| *force += external);
-        let zeros = vec![0.0; system.size()];
         Equilibrium {
             mesh_forces: system.meshes.iter().map(|mesh| flank(mesh.drive)).collect(),
             coast_forces: system.meshes.iter().map(|mesh| mesh.coast.map_or(0.0, flank)).collect(),
@@ -162,10 +170,8 @@ impl Transmission {
             state: TransmissionState {
                 step: 0,
                 position: found.position.clone(),
-                velocity: zeros.clone(),
-                acceleration: zeros,
+                velocity: vec![0.0; system.size()],
                 connection: found.forces,
-                force,
             },
             position: found.position,
             iterations,
@@ -196,8 +202,9 @@ impl Transmission {
     /// As [`Self::start`] and [`Runner::record`].
     pub fn run(&self, request: &RunRequest, observer: &dyn Observer) -> Result<TransmissionRun, PlanetaryError> {
         let mut runner = self.start(request)?;
-        runner.settle(request.settle_steps, observer)?;
-        runner.record(request.record_steps, observer)
+        let lead = request.band.map_or(0, |band| band.lead_steps(runner.time_step()));
+        runner.settle(request.settle_steps.saturating_sub(lead), observer)?;
+        runner.record(request.samples, observer)
     }
 
     /// The driven body and its axis.
