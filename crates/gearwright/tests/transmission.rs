@@ -209,9 +209,11 @@ fn run_writes_everything_it_promises_and_it_hangs_together() {
         }
     }
     // nothing above half the sample rate, nothing but the transition of the filter above the band
-    let (frequencies, lines) = (column(&folder.join("spectrum.csv"), "frequency_hz"), column(&folder.join("spectrum.csv"), "at_tooth_g"));
+    let (frequencies, lines) =
+        (column(&folder.join("spectrum.csv"), "frequency_hz"), column(&folder.join("spectrum.csv"), "at_tooth_g"));
     assert!((frequencies.last().unwrap() - 5.0 * 573.39).abs() < 10.0);
-    let greatest = |from: f64| frequencies.iter().zip(&lines).filter(|(f, _)| **f > from).map(|(_, a)| *a).fold(0.0, f64::max);
+    let greatest =
+        |from: f64| frequencies.iter().zip(&lines).filter(|(f, _)| **f > from).map(|(_, a)| *a).fold(0.0, f64::max);
     assert!(greatest(2800.0) < 1e-2 * greatest(100.0));
     // speeds of the dissertation
     assert!((summary["train"]["mesh_frequency_hz"].as_f64().unwrap() - 573.4).abs() < 0.1);

@@ -141,7 +141,8 @@ fn analytic_band_of_a_sensor() {
         let band = Band { frequency: 19e3, steps_per_sample };
         let step = 1.0 / (MESH_FREQUENCY * (per_cycle * steps_per_sample) as f64);
         let settle_steps = band.lead_steps(step);
-        let own = RunRequest { band: Some(band), settle_steps, ..request(per_cycle * steps_per_sample, samples, stages) };
+        let own =
+            RunRequest { band: Some(band), settle_steps, ..request(per_cycle * steps_per_sample, samples, stages) };
         let run = transmission.run(&own, &()).unwrap();
         assert_eq!((run.len(), run.first_step), (samples, settle_steps as i64));
         let (mut error, mut size) = (0.0, 0.0);

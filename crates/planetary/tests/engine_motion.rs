@@ -124,9 +124,18 @@ fn order_of_an_oscillator_that_parts_from_its_mesh() {
 
 #[test]
 fn order_with_bearings_of_any_stiffness() {
-    for (stages, stiffness) in
-        [(1, 4e8), (1, 1e12), (1, f64::INFINITY), (2, 4e8), (2, 1e12), (2, f64::INFINITY), (3, 4e8), (3, 1e12), (3, f64::INFINITY), (4, 4e8)]
-    {
+    for (stages, stiffness) in [
+        (1, 4e8),
+        (1, 1e12),
+        (1, f64::INFINITY),
+        (2, 4e8),
+        (2, 1e12),
+        (2, f64::INFINITY),
+        (3, 4e8),
+        (3, 1e12),
+        (3, f64::INFINITY),
+        (4, 4e8),
+    ] {
         let mut spec = in_housing(&[0.1, 1.9, 4.4], 0.1);
         for planet in &mut spec.stage.planets {
             planet.bearing_stiffness[..2].fill(stiffness);

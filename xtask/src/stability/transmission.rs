@@ -12,7 +12,6 @@ use planetary::mesh::{DamagedTooth, MeshLaw, MeshTable, TableOptions};
 use super::{Answer, Table};
 use crate::train::{self, POSITIONS, STEPS_PER_SAMPLE, Scene, TORQUE};
 
-
 type Outcome = anyhow::Result<Answer>;
 
 /// All cases.
@@ -211,7 +210,11 @@ fn operation(table: &mut Table, scene: &Scene) {
         });
     }
     table.answered("standing, steps of 20 us", || {
-        run(&scene.spec()?, &RunRequest { turning: Turning::Standing { time_step: 2e-5 }, band: None, samples: 3000, ..usual() }, true)
+        run(
+            &scene.spec()?,
+            &RunRequest { turning: Turning::Standing { time_step: 2e-5 }, band: None, samples: 3000, ..usual() },
+            true,
+        )
     });
     table.answered("after a million mesh cycles", || {
         run(&scene.spec()?, &RunRequest { travelled: 1e6, ..usual() }, true)

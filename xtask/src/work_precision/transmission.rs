@@ -79,8 +79,7 @@ fn time(scene: &Scene) -> anyhow::Result<()> {
         "steps in time",
         &format!(
             "Time is that of the run: equilibrium, {TRANSIENT}; tables of {FINEST_POSITIONS} positions a mesh cycle are made before. Steps and stages against {} steps a sample of {} stages; planet passes before the record against the same places of the transmission {PASSES} passes later.",
-            FINE.0,
-            FINE.1,
+            FINE.0, FINE.1,
         ),
         vec![ACCELERATION, FORCE],
         entries,

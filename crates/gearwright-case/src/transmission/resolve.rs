@@ -188,10 +188,13 @@ pub fn resolve(mut inputs: Transmission, document: &Node, folder: &Path) -> Resu
     let sampling = speeds.as_ref().ok().map(|speeds| Sampling::new(&inputs, speeds.mesh_frequency));
     if let Some(sampling) = &sampling {
         let run = &inputs.run;
-        let turns = f64::from(run.carrier_turns) + f64::from(run.settling_planet_passes) / f64::from(inputs.train.planets);
+        let turns =
+            f64::from(run.carrier_turns) + f64::from(run.settling_planet_passes) / f64::from(inputs.train.planets);
         let steps = sampling.steps_per_cycle() as f64 * f64::from(inputs.ring.teeth) * turns;
         if steps > MOST_STEPS {
-            let message = format!("makes {steps:e} time steps; at most {MOST_STEPS:e}: record fewer turns, or a lower signals.band_hz");
+            let message = format!(
+                "makes {steps:e} time steps; at most {MOST_STEPS:e}: record fewer turns, or a lower signals.band_hz"
+            );
             faults.push(document.fault("run.carrier_turns", message));
         }
         let fewest = sampling.steps_per_cycle();

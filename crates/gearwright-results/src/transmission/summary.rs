@@ -210,7 +210,12 @@ pub fn screen(case: &TransmissionCase, findings: &Findings, times: &Times) -> St
             None => "not measured".into(),
         };
         let resolution = &findings.resolution;
-        let _ = writeln!(text, "left       by steps {}; by transient {}", left(resolution.steps), left(resolution.transient));
+        let _ = writeln!(
+            text,
+            "left       by steps {}; by transient {}",
+            left(resolution.steps),
+            left(resolution.transient)
+        );
     }
     let _ = writeln!(text, "\n{:<24} {:>10} {:>22} {:>10}", "state", "mesh kN", "least to greatest kN", "share");
     for state in findings.states.iter().take(LINES) {

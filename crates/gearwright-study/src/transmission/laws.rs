@@ -76,11 +76,7 @@ fn stopped(observer: &dyn RunObserver) -> anyhow::Result<()> {
 }
 
 /// The contact model of sound gears, made once it is needed.
-fn made<'a>(
-    model: &'a OnceLock<PairModel>,
-    case: &TransmissionCase,
-    site: MeshSite,
-) -> anyhow::Result<&'a PairModel> {
+fn made<'a>(model: &'a OnceLock<PairModel>, case: &TransmissionCase, site: MeshSite) -> anyhow::Result<&'a PairModel> {
     if let Some(model) = model.get() {
         return Ok(model);
     }
@@ -133,7 +129,12 @@ impl<'a> Site<'a> {
         stopped(self.observer)?;
         let (options, name) = (self.options, name(self.site));
         let tooth = DamagedTooth { member, pair: 0, damage: damage.to_vec() };
-        let key = (self.case.train.pair(self.site), &self.case.pairs[usize::from(self.site == MeshSite::PlanetRing)], options, &tooth);
+        let key = (
+            self.case.train.pair(self.site),
+            &self.case.pairs[usize::from(self.site == MeshSite::PlanetRing)],
+            options,
+            &tooth,
+        );
         self.cache.get("damage", &key, || {
             self.observer.stage(&format!("contact of the {name}, {label}"));
             let (model, teeth) = (made(&self.model, self.case, self.site)?, std::slice::from_ref(&tooth));

@@ -18,9 +18,7 @@ use gearwright_case::lumped_pair::resolve::HEALTHY;
 use gearwright_results::transmission::summary::Times;
 use gearwright_results::transmission::{Findings, Resolution, Sensor};
 use planetary::elastic::ElasticBody;
-use planetary::engine::{
-    Band, Load, NaturalMode, RunRequest, STAGES, Start, Transmission, TransmissionRun, Turning,
-};
+use planetary::engine::{Band, Load, NaturalMode, RunRequest, STAGES, Start, Transmission, TransmissionRun, Turning};
 use rayon::prelude::*;
 
 use super::{AsObserver, RunObserver};

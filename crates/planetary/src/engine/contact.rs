@@ -51,11 +51,7 @@ impl Flank {
             if f < self.damping_force { (f / self.damping_force, slope / self.damping_force) } else { (1.0, 0.0) };
         let force = f + self.damping * share * speed;
         if force > 0.0 {
-            Press {
-                force,
-                by_approach: slope + self.damping * share_slope * speed,
-                by_speed: self.damping * share,
-            }
+            Press { force, by_approach: slope + self.damping * share_slope * speed, by_speed: self.damping * share }
         } else {
             Press::default()
         }

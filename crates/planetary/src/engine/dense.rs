@@ -53,7 +53,8 @@ impl Matrix {
         let mut exchanges = Vec::with_capacity(n);
         for k in 0..n {
             let below = &self.column(k)[k..];
-            let place = below.iter().enumerate().fold(0, |best, (i, x)| if x.abs() > below[best].abs() { i } else { best });
+            let place =
+                below.iter().enumerate().fold(0, |best, (i, x)| if x.abs() > below[best].abs() { i } else { best });
             let pivot = below[place];
             if !(pivot.abs() > threshold * sizes[k] && pivot.is_finite()) {
                 return None;

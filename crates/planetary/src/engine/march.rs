@@ -181,9 +181,8 @@ impl StageSpring {
         }
         // l = k d + c (D d + D_0 d_start), so d = (k + c D)^-1 (l - c D_0 d_start)
         let rate = |i: usize, j: usize| spring.damping / step * stages.slope[i * (s + 1) + j];
-        let stiffness = nalgebra::DMatrix::from_fn(s, s, |i, j| {
-            rate(i, j + 1) + if i == j { spring.stiffness } else { 0.0 }
-        });
+        let stiffness =
+            nalgebra::DMatrix::from_fn(s, s, |i, j| rate(i, j + 1) + if i == j { spring.stiffness } else { 0.0 });
         // the matrix of differentiation has eigenvalues of positive real part
         let inverse = stiffness.try_inverse().unwrap_or_else(|| nalgebra::DMatrix::zeros(s, s));
         let start = (0..s).map(|i| -(0..s).map(|j| inverse[(i, j)] * rate(j, 0)).sum::<f64>()).collect();
@@ -299,9 +298,10 @@ impl Stepper {
         for (index, row) in system.rows.iter().enumerate() {
             let turns = matches!(row.housing, HousingPart::Seat(_)) || row.parts.iter().any(|part| part.turning);
             if !turns {
-                let rigid = row.parts.iter().flat_map(|part| {
-                    part.row.iter().enumerate().map(|(k, value)| (RIGID * part.body + k, *value))
-                });
+                let rigid = row
+                    .parts
+                    .iter()
+                    .flat_map(|part| part.row.iter().enumerate().map(|(k, value)| (RIGID * part.body + k, *value)));
                 let housing = match row.housing {
                     HousingPart::Interface(interface) => Some((interface, -1.0)),
                     _ => None,
@@ -520,7 +520,8 @@ impl Stepper {
         let end = &self.stages.motion_end;
         done.position = (0..system.size())
             .map(|k| {
-                let stage = |i: usize| if k < rigid { moved.rigid[i * rigid + k] } else { moved.modes[i * count + k - rigid] };
+                let stage =
+                    |i: usize| if k < rigid { moved.rigid[i * rigid + k] } else { moved.modes[i * count + k - rigid] };
                 end[0] * begin.position[k] + (0..s).map(|i| end[i + 1] * stage(i)).sum::<f64>()
             })
             .collect();
@@ -559,7 +560,8 @@ impl Stepper {
         free: &[f64],
     ) -> Result<Connections, PlanetaryError> {
         let (s, places, count) = (self.stages.count, self.places.len(), rows.len());
-        let overconstrained = || PlanetaryError::OverConstrained { cycle: course.travelled.last().copied().unwrap_or_default() };
+        let overconstrained =
+            || PlanetaryError::OverConstrained { cycle: course.travelled.last().copied().unwrap_or_default() };
         // J W J^T of these rows
         let mut compliance = Matrix::zeros(s * count, s * count);
         let mut motion = vec![0.0; s * places];

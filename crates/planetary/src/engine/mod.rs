@@ -52,8 +52,8 @@ mod transmission;
 
 pub use band::Band;
 pub use request::{
-    BearingRecord, BodyRecord, Deviation, Equilibrium, MeshRecord, NaturalMode, RunRequest, STAGES, SensorRecord, Series, Start,
-    TransmissionRun, TransmissionState, TransmissionStats, Turning,
+    BearingRecord, BodyRecord, Deviation, Equilibrium, MeshRecord, NaturalMode, RunRequest, STAGES, SensorRecord,
+    Series, Start, TransmissionRun, TransmissionState, TransmissionStats, Turning,
 };
 pub use run::Runner;
 pub use spec::{

@@ -9,9 +9,9 @@ use fecm::linalg::symmetric_eigen;
 use nalgebra::DMatrix;
 
 use super::contact::Touch;
+use super::placed::Placed;
 use super::request::NaturalMode;
 use super::rows::RIGID;
-use super::placed::Placed;
 use super::transmission::{Load, Transmission};
 use crate::error::PlanetaryError;
 

@@ -50,11 +50,7 @@ impl Placed {
         for (index, row) in system.rows.iter().enumerate() {
             for part in &row.parts {
                 placed.of_body[part.body].push(placed.parts.len());
-                placed.parts.push(PlacedPart {
-                    row: index,
-                    body: part.body,
-                    values: part.at((cos, sin)),
-                });
+                placed.parts.push(PlacedPart { row: index, body: part.body, values: part.at((cos, sin)) });
             }
             match &row.housing {
                 HousingPart::None => {}
@@ -168,4 +164,3 @@ impl Placed {
 fn dot6(a: &[f64; RIGID], b: &[f64]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5]
 }
-

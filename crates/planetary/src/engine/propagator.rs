@@ -133,7 +133,8 @@ impl BodyStep {
         let A = |i: usize, j: usize| h * stages.integral[i * s + j];
         // weights of the rule: the integral to the end, from that of every polynomial
         let weights: Vec<f64> = fecm::element::lagrange::gauss_rule(s).into_iter().map(|(_, w)| 0.5 * h * w).collect();
-        let translation = (0..s * s).map(|k| (0..s).map(|l| A(k / s, l) * A(l, k % s)).sum::<f64>() / body.mass).collect();
+        let translation =
+            (0..s * s).map(|k| (0..s).map(|l| A(k / s, l) * A(l, k % s)).sum::<f64>() / body.mass).collect();
         let tensor = Matrix3::from_fn(|i, j| body.tensor[i][j]);
         // moments of inertia are positive
         let inverse = tensor.try_inverse().unwrap_or_default();
@@ -170,10 +171,7 @@ impl BodyStep {
             translation,
             impulse: weights.iter().map(|w| w / body.mass).collect(),
             drift: stages.nodes.iter().map(|node| h * node).collect(),
-            spin: (
-                DMatrix::identity(3, 3) - &sum * &turned * &from_rate,
-                &sum * (spread - turned * &from_moment),
-            ),
+            spin: (DMatrix::identity(3, 3) - &sum * &turned * &from_rate, &sum * (spread - turned * &from_moment)),
             rotation_drift: &integrate * from_rate,
             rotation: integrate * from_moment,
         }
@@ -282,7 +280,8 @@ mod tests {
         let h: f64 = 2e-5;
         for count in 1..=4 {
             let stages = Stages::new(count);
-            let weights: Vec<f64> = fecm::element::lagrange::gauss_rule(count).iter().map(|(_, w)| 0.5 * h * w).collect();
+            let weights: Vec<f64> =
+                fecm::element::lagrange::gauss_rule(count).iter().map(|(_, w)| 0.5 * h * w).collect();
             for angle in [0.01, 1.0, 8.0, 300.0] {
                 let w = angle / h;
                 let own = ModeStep::new(&stages, h, w, 0.0);

@@ -98,7 +98,11 @@ impl<'a> Runner<'a> {
         let points = stages.points.iter().map(|part| self.place(step, *part).travelled);
         let external = places[1..].iter();
         let external = external.map(|place| self.transmission.external(*place, self.request.output_torque, self.speed));
-        Course { travelled: points.chain([self.place(step + 1, 0.0).travelled]).collect(), external: external.collect(), places }
+        Course {
+            travelled: points.chain([self.place(step + 1, 0.0).travelled]).collect(),
+            external: external.collect(),
+            places,
+        }
     }
 
     fn advance(&mut self) -> Result<(), PlanetaryError> {
@@ -122,9 +126,7 @@ impl<'a> Runner<'a> {
             iterations += mean.report.iterations;
             done = mean.spread(self.request.stages);
         }
-        let lost = |what| {
-            Err(PlanetaryError::Lost { step: next, cycle: self.place(next, 0.0).travelled, what })
-        };
+        let lost = |what| Err(PlanetaryError::Lost { step: next, cycle: self.place(next, 0.0).travelled, what });
         if !done.report.is_solved {
             return lost("no forces of the meshes were found that fit their approaches");
         }
@@ -189,7 +191,13 @@ impl<'a> Runner<'a> {
             }
             match &mut band {
                 None => {
-                    let values = runner.channels(&run, &runner.state.connection, &runner.last.end_approaches, &runner.state.position, (1, 0));
+                    let values = runner.channels(
+                        &run,
+                        &runner.state.connection,
+                        &runner.last.end_approaches,
+                        &runner.state.position,
+                        (1, 0),
+                    );
                     let modal = runner.accelerations();
                     push(&mut run, &values);
                     push_sensors(&mut run, system, &modal);

@@ -58,7 +58,11 @@ impl Stages {
             })
             .collect();
         let rows = |places: &[f64], pick: fn((f64, f64)) -> f64| -> Vec<f64> {
-            places.iter().flat_map(|&x| (0..=count).map(move |j| (j, x))).map(|(j, x)| pick(lagrange(&with_start, j, x))).collect()
+            places
+                .iter()
+                .flat_map(|&x| (0..=count).map(move |j| (j, x)))
+                .map(|(j, x)| pick(lagrange(&with_start, j, x)))
+                .collect()
         };
         // one stage: the mean force, at the middle
         let fine = rule(if count == 1 { 1 } else { FINER * count });

@@ -1,12 +1,12 @@
 //! A transmission made ready: rest, natural modes, motion.
 
 use super::natural::square;
+use super::placed::Place;
 use super::request::{Equilibrium, RunRequest, TransmissionRun, TransmissionState, Turning};
+use super::rest::{Operator, Stepped, step};
 use super::rows::RIGID;
 use super::run::Runner;
 use super::spec::{BodyId, TransmissionSpec};
-use super::placed::Place;
-use super::rest::{Operator, Stepped, step};
 use super::system::System;
 use crate::error::PlanetaryError;
 use fecm::statics::Observer;

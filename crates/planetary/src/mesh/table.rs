@@ -145,7 +145,8 @@ impl MeshTable {
         let most = MOST_POSITIONS as f64;
         let place = ((mesh_cycle - self.data.origin) * self.data.sound.len() as f64).clamp(-most, most);
         let nearest = place.round();
-        let (below, t) = if (place - nearest).abs() < AT_POSITION { (nearest, 0.0) } else { (place.floor(), place - place.floor()) };
+        let (below, t) =
+            if (place - nearest).abs() < AT_POSITION { (nearest, 0.0) } else { (place.floor(), place - place.floor()) };
         let weights = [
             0.5 * t * (t * (2.0 - t) - 1.0),
             1.0 + 0.5 * t * t * (3.0 * t - 5.0),
@@ -164,7 +165,11 @@ impl MeshLaw for MeshTable {
             sum.force += weight * own.force;
             sum.stiffness += weight * own.stiffness;
         }
-        if sum.force > 0.0 { MeshResponse { stiffness: sum.stiffness.max(0.0), ..sum } } else { MeshResponse::default() }
+        if sum.force > 0.0 {
+            MeshResponse { stiffness: sum.stiffness.max(0.0), ..sum }
+        } else {
+            MeshResponse::default()
+        }
     }
 }
 
