@@ -141,7 +141,7 @@ fn state_summary(findings: &Findings, state: &State) -> Json {
         "state": state.name,
         "samples": state.run.len(),
         "sample_time_s": state.run.sample_time,
-        "change_from_period_to_period": state.change,
+        "change_from_period_to_period": state.change.or(findings.resolution.transient.and_then(|left| left.acceleration)),
         "sensors": sensors,
         "meshes": meshes,
         "work": {

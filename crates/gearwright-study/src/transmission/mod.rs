@@ -69,8 +69,7 @@ pub fn compute(case: &TransmissionCase, cache: &Cache, observer: &dyn RunObserve
 
     observer.stage("signals and indicators");
     let clock = Instant::now();
-    let mut findings = findings(case, &laws[0], runs, modes, parts, housing.as_ref())?;
-    findings.resolution = resolution;
+    let mut findings = findings(case, &laws[0], runs, modes, parts, housing.as_ref(), resolution)?;
     times.signals = clock.elapsed().as_secs_f64();
     findings.times = times;
     Ok(findings)
@@ -193,7 +192,7 @@ fn findings(
         mean_force: force,
         mean_stiffness: [&healthy.sun, &healthy.ring]
             .map(|laws| laws.first().map(|law| mean_stiffness(law.as_ref(), force))),
-        resolution: Resolution::default(),
+        resolution,
         times: Times::default(),
     })
 }
