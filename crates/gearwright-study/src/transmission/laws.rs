@@ -129,12 +129,8 @@ impl<'a> Site<'a> {
         stopped(self.observer)?;
         let (options, name) = (self.options, name(self.site));
         let tooth = DamagedTooth { member, pair: 0, damage: damage.to_vec() };
-        let key = (
-            self.case.train.pair(self.site),
-            &self.case.pairs[usize::from(self.site == MeshSite::PlanetRing)],
-            options,
-            &tooth,
-        );
+        let pair = &self.case.pairs[usize::from(self.site == MeshSite::PlanetRing)];
+        let key = format!("{:?}", (self.case.train.pair(self.site), pair, options, &tooth));
         self.cache.get("damage", &key, || {
             self.observer.stage(&format!("contact of the {name}, {label}"));
             let (model, teeth) = (made(&self.model, self.case, self.site)?, std::slice::from_ref(&tooth));
