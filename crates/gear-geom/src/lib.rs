@@ -18,10 +18,10 @@
 //! ```
 //! use gear_geom::{Gear, GearPair, GearSpec, ToothThickness};
 //!
-//! // 27 teeth with a profile shift of 0.2 and 35 teeth, module 3 mm, at their standard centre distance and 0.1 mm more
+//! // 27 teeth with a profile shift of 0.05 and 35 teeth, module 3 mm, at 0.2 mm more than their standard centre distance
 //! let pinion = GearSpec::standard(27, 3e-3).with(|gear| gear.thickness = ToothThickness::ProfileShift(0.05));
 //! let pair = GearPair::new(Gear::new(&pinion)?, Gear::new(&GearSpec::standard(35, 3e-3))?, 93.2e-3)?;
-//! assert!((pair.contact_ratio() - 1.65).abs() < 0.05, "{}", pair.contact_ratio());
+//! assert!((pair.contact_ratio() - 1.59).abs() < 0.02, "{}", pair.contact_ratio());
 //! # Ok::<(), gear_geom::GeometryErrors>(())
 //! ```
 //!
