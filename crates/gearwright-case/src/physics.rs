@@ -182,7 +182,7 @@ mod tests {
     use gear_geom::GearSpec;
 
     fn pair() -> GearPair {
-        let gear = Gear::new(&GearSpec::default()).unwrap();
+        let gear = Gear::new(&GearSpec::standard(25, 6e-3).with(|gear| gear.facewidth = 16e-3)).unwrap();
         GearPair::new(gear.clone(), gear, 150.1e-3).unwrap()
     }
 

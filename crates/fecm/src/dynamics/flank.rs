@@ -90,15 +90,11 @@ mod tests {
 
     fn gear(teeth: u32) -> Gear {
         let module = 6e-3;
-        let radius = 0.5 * module * f64::from(teeth);
-        let spec = GearSpec {
-            teeth,
-            thickness: ToothThickness::AtReference(0.5 * std::f64::consts::PI * module - 0.05e-3),
-            tip_radius: radius + module,
-            root_radius: radius - 1.25 * module,
-            rim_radius: 0.4 * radius,
-            ..GearSpec::default()
-        };
+        let thickness = ToothThickness::AtReference(0.5 * std::f64::consts::PI * module - 0.05e-3);
+        let spec = GearSpec::standard(teeth, module).with(|spec| {
+            spec.thickness = thickness;
+            spec.facewidth = 16e-3;
+        });
         Gear::new(&spec).unwrap()
     }
 
