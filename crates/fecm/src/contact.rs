@@ -3,15 +3,14 @@
 //! Each tooth pair that can touch gets rows of cells across the expected contact, uniform in arc length along the master flank, times the
 //! cells along the face. The compliance of all cells is
 //!
-//! `C = sum over bodies of Psi (U_FE - U_depth) Psi^T + U_surface`,
+//! `C = sum over bodies of Psi R Psi^T + G_half-space`,
 //!
-//! with `Psi` the functions along the face at the cells, `U_FE` the finite-element compliance between stations
-//! ([`crate::body`]) and the near field of [`crate::nearfield`]. It is symmetric by construction.
+//! with `Psi` the functions along the face at the cells, `R` what the finite elements add to the half-space, between stations
+//! ([`crate::body`]), and the near field of [`crate::nearfield`]. It is symmetric by construction.
 
 use faer::{Mat, MatRef};
 
 use crate::body::{GearBody, Station};
-use crate::error::FecmError;
 use crate::linalg::{add_block, add_product, column_slice, column_slice_mut};
 use crate::nearfield::{FaceCells, NearField};
 use crate::search::{Member, NoCell, OpposedPoints, PlacedPair};
@@ -142,15 +141,8 @@ impl ContactGrid {
 
     /// Compliance between all cells (m/N), symmetric. `tooth_step` says how a pair's tooth number on each body advances with the pair
     /// number, in the direction of increasing angle of the body's own frame.
-    ///
-    /// # Errors
-    /// [`FecmError::PointOutsideMesh`] from the stations.
-    pub fn compliance(
-        &self,
-        bodies: [&GearBody; 2],
-        tooth_step: [i32; 2],
-        near: &NearField,
-    ) -> Result<Mat<f64>, FecmError> {
+    #[must_use]
+    pub fn compliance(&self, bodies: [&GearBody; 2], tooth_step: [i32; 2], near: &NearField) -> Mat<f64> {
         let count = self.face.centres.len();
         let mut total = Mat::zeros(self.size(), self.size());
         let starts = self.starts();
@@ -158,7 +150,7 @@ impl ContactGrid {
         // functions along the face of both bodies and all families side by side, at the cells
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); count];
         for (index, body) in bodies.iter().enumerate() {
-            stations.push(self.stations(body, index, tooth_step[index])?);
+            stations.push(self.stations(body, index, tooth_step[index]));
             for family in &body.families {
                 for (values, &z) in values.iter_mut().zip(&self.face.centres) {
                     values.extend(family.basis.plane_values(z));
@@ -173,11 +165,7 @@ impl ContactGrid {
                     let at = |k: usize, pair: &PairGrid| (pair.pair * tooth_step[index], stations[index][k].as_slice());
                     for (family_index, family) in body.families.iter().enumerate() {
                         let functions = family.basis.plane_degrees().len();
-                        let mut own = body.compliance(family_index, at(i, observed), at(j, loaded));
-                        if i == j {
-                            subtract_depth(&mut own, functions, |d| near.depth(index, family_index, d));
-                        }
-                        modal.push((functions, own));
+                        modal.push((functions, body.remainder(family_index, at(i, observed), at(j, loaded))));
                     }
                 }
                 add_expanded(&mut total, [starts[i] * count, starts[j] * count], &modal, psi.as_ref(), i == j);
@@ -185,7 +173,7 @@ impl ContactGrid {
         }
         self.add_surface(&mut total, &starts, near);
         mirror_upper(&mut total);
-        Ok(total)
+        total
     }
 
     /// First row of each pair in the list of all rows.
@@ -200,7 +188,7 @@ impl ContactGrid {
             .collect()
     }
 
-    fn stations(&self, body: &GearBody, index: usize, tooth_step: i32) -> Result<Vec<Vec<Station>>, FecmError> {
+    fn stations(&self, body: &GearBody, index: usize, tooth_step: i32) -> Vec<Vec<Station>> {
         let of_pair = |pair: &PairGrid| {
             let roll = |row: &OpposedPoints| if index == 0 { row.pinion_roll } else { row.wheel_roll };
             let sector = body.sector(pair.pair * tooth_step);
@@ -217,16 +205,6 @@ impl ContactGrid {
                     add_block(total, (start + i) * count, (start + j) * count, 1.0, near.surface(j - i));
                 }
             }
-        }
-    }
-}
-
-/// Takes the block-Toeplitz depth influence out of a station compliance.
-fn subtract_depth<'a>(modal: &mut Mat<f64>, functions: usize, depth: impl Fn(usize) -> &'a Mat<f64>) {
-    let rows = modal.nrows() / functions;
-    for i in 0..rows {
-        for j in 0..rows {
-            add_block(modal, i * functions, j * functions, -1.0, depth(i.abs_diff(j)));
         }
     }
 }

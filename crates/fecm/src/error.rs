@@ -122,18 +122,4 @@ pub enum FecmError {
         /// Unit of both.
         unit: &'static str,
     },
-    /// A material point was not found in the mesh.
-    #[error(
-        "no element of the {body} mesh holds the point ({x:.6} m, {y:.6} m) at depth {depth:.3e} m below the flank"
-    )]
-    PointOutsideMesh {
-        /// Which body.
-        body: &'static str,
-        /// Place (m).
-        x: f64,
-        /// Place (m).
-        y: f64,
-        /// Depth below the flank (m).
-        depth: f64,
-    },
 }

@@ -9,7 +9,7 @@
 //! | [`body`] | a gear as the contact problem sees it |
 //! | [`mass`], [`modes`] | inertia of a gear, and its elastic modes with the hub held |
 //! | [`profile`], [`pairing`], [`search`] | flanks in space, exact separations, tip contact |
-//! | [`halfspace`], [`nearfield`], [`contact`] | local deformation, contact grid and its compliance |
+//! | [`profile_basis`], [`halfspace`], [`nearfield`], [`contact`] | functions along a flank, local deformation, contact grid and its compliance |
 //! | [`lcp`] | the contact problem and its solvers |
 //! | [`statics`] | transmission error, load sharing and mesh stiffness over the mesh cycle |
 //! | [`dynamics`] | motion in time, with the contact solved at every step |
@@ -59,6 +59,7 @@ pub mod modes;
 pub mod nearfield;
 pub mod pairing;
 pub mod profile;
+pub mod profile_basis;
 pub mod ring;
 pub mod search;
 pub mod statics;

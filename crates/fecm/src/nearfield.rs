@@ -1,13 +1,23 @@
-//! The local part of contact: half-space displacement at the surface less that at matching depth.
+//! The local part of contact: what a half-space adds to finite elements at the surface.
 //!
-//! Vijayakar's split (S. Vijayakar, *Int. J. Numer. Methods Eng.* 31, 1991, 525-545; dissertation section 3.2.1):
-//! `u(surface) = [u_half-space(surface) - u_half-space(depth h)] + u_FE(depth h)`. The finite elements carry only as many functions along the
-//! face as their basis has, so the subtracted term is first projected on that basis: what the finite elements do not resolve is left to
-//! the half-space at the surface. With growing order the projection becomes the identity and the split the usual one; for any
-//! order the sum does not depend on `h` as long as `h` is between the element size and the tooth thickness.
+//! Near a concentrated load a tooth deforms as a half-space does; the difference between the two is smooth. So of the compliance between two
+//! places of a flank,
 //!
-//! A solid near a free end of the face is softer than a half-space. Mirror loads beyond the end (which free the end plane of shear)
-//! correct the local difference; they can be switched off.
+//! `G = G_half-space + R`, `R = G - G_half-space`,
+//!
+//! `G_half-space` is taken in full resolution between the cells of the contact, and only `R` from the finite elements, on polynomials `phi_m` along
+//! the profile ([`ProfileBasis`]) and `psi_k` along the face ([`FaceBasis`]):
+//!
+//! `R = sum phi_m psi_k [ K_FE^-1 - P G_half-space P ]_(mk, nl) phi_n psi_l`,
+//!
+//! with `P` the projection on these polynomials. Both terms in the bracket are read at the surface under the same smooth loads, which the finite elements
+//! resolve. There is no depth at which one field takes over from another (S. Vijayakar, *Int. J. Numer. Methods Eng.* 31, 1991, 525-545, matches
+//! at a depth; between surface and depth a half-space then stands for a curved and finite tooth, which makes teeth too stiff by an amount
+//! proportional to the depth). The bracket is symmetric, so reciprocity is exact. Its error falls with the degree of the polynomials
+//! (`tests/invariant_statics.rs`); the finite-element part converges like an energy.
+//!
+//! A solid near a free end of the face is softer than a half-space. Mirror loads beyond the ends (which free the end planes of shear)
+//! are part of `G_half-space` in both places; they can be switched off.
 //!
 //! Tables hold values per index difference on a uniform grid and are made once per cell size.
 
@@ -15,10 +25,12 @@ use std::sync::OnceLock;
 
 use faer::Mat;
 
+use crate::element::lagrange::gauss_rule;
 use crate::face::{FaceBasis, FaceModel};
 use crate::halfspace::{rectangle_displacement, strip_displacement};
-use crate::linalg::column_slice;
+use crate::linalg::product;
 use crate::material::Material;
+use crate::profile_basis::ProfileBasis;
 
 /// Cells across the face that carry the contact.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,14 +55,12 @@ impl FaceCells {
 }
 
 /// One body of the near field.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub struct NearBody {
     /// Material.
     pub material: Material,
-    /// Face bases of the body's families.
-    pub bases: Vec<FaceBasis>,
-    /// Matching depth (m).
-    pub depth: f64,
+    /// Facewidth of the body (m).
+    pub width: f64,
 }
 
 /// What the influence of one cell size on one body pair rests on.
@@ -72,20 +82,9 @@ pub struct NearFieldSpec {
 #[derive(Debug)]
 pub struct NearField {
     spec: NearFieldSpec,
-    rows: Vec<OnceLock<RowInfluence>>,
+    /// Cells x cells, displacement per unit cell force, both bodies (m/N).
+    rows: Vec<OnceLock<Mat<f64>>>,
 }
-
-/// Influence between two rows.
-#[derive(Debug)]
-struct RowInfluence {
-    /// Cells x cells, displacement per unit cell force, both bodies, free edges included (m/N).
-    surface: Mat<f64>,
-    /// `[body][family]`: functions x functions, to be subtracted from the finite-element compliance.
-    depth: [Vec<Mat<f64>>; 2],
-}
-
-/// Mirror loads reach this many matching depths.
-const EDGE_REACH: f64 = 8.0;
 
 impl NearField {
     /// Largest difference of rows.
@@ -97,118 +96,151 @@ impl NearField {
         Self { spec, rows: std::iter::repeat_with(OnceLock::new).take(Self::MOST_ROWS).collect() }
     }
 
-    fn row(&self, difference: usize) -> &RowInfluence {
-        self.rows[difference].get_or_init(|| self.spec.row(difference as f64 * self.spec.cell))
-    }
-
     /// Surface influence between cells of rows this far apart; `row_difference` below [`Self::MOST_ROWS`].
     #[must_use]
     pub fn surface(&self, row_difference: usize) -> &Mat<f64> {
-        &self.row(row_difference).surface
-    }
-
-    /// Depth influence between face functions of rows this far apart, for body 0 or 1.
-    #[must_use]
-    pub fn depth(&self, body: usize, family: usize, row_difference: usize) -> &Mat<f64> {
-        &self.row(row_difference).depth[body][family]
+        self.rows[row_difference].get_or_init(|| {
+            let x = row_difference as f64 * self.spec.cell;
+            if matches!(self.spec.model, FaceModel::Solid { .. }) { self.spec.solid(x) } else { self.spec.plane(x) }
+        })
     }
 }
 
 impl NearFieldSpec {
-    fn row(&self, x: f64) -> RowInfluence {
-        let (model, cell) = (self.model, self.cell);
-        let solid = matches!(model, FaceModel::Solid { .. });
-        let surface = if solid {
-            solid_surface(&self.bodies, x, cell, &self.face, self.edge_correction)
-        } else {
-            plane_surface(model, &self.bodies, x, cell)
+    fn plane(&self, x: f64) -> Mat<f64> {
+        let of = |body: &NearBody| {
+            strip_displacement(&body.material, self.model == FaceModel::PlaneStrain, 0.5 * self.cell, x, 0.0)
+                / body.width
         };
-        let depth = [0, 1].map(|index: usize| {
-            let body = &self.bodies[index];
-            let of_family = |basis: &FaceBasis| {
-                if solid { solid_depth(body, basis, x, cell) } else { plane_depth(model, body, basis, x, cell) }
-            };
-            body.bases.iter().map(of_family).collect()
-        });
-        RowInfluence { surface, depth }
+        let sum = self.bodies.iter().map(of).sum();
+        Mat::from_fn(1, 1, |_, _| sum)
+    }
+
+    fn solid(&self, x: f64) -> Mat<f64> {
+        let face = &self.face;
+        let count = face.centres.len();
+        let first = face.centres.first().copied().unwrap_or(0.0);
+        let at = |body: &NearBody, z: f64| {
+            rectangle_displacement(&body.material, 0.5 * self.cell, 0.5 * face.width, x, z, 0.0)
+        };
+        // on the uniform grid all distances follow from the difference and from the sum of two cell numbers
+        let mut difference = vec![0.0; count];
+        let mut sum = vec![0.0; 2 * count];
+        for body in &self.bodies {
+            for (k, value) in difference.iter_mut().enumerate() {
+                let apart = k as f64 * face.width;
+                *value += at(body, apart);
+                if self.edge_correction && face.mirrored {
+                    *value += at(body, body.width + apart) + at(body, body.width - apart);
+                }
+            }
+            for (k, value) in sum.iter_mut().enumerate() {
+                let places = 2.0 * first + k as f64 * face.width;
+                if face.mirrored {
+                    *value += at(body, places);
+                }
+                if self.edge_correction {
+                    *value += at(body, body.width - places) + at(body, body.width + places);
+                }
+            }
+        }
+        // a mirrored cell carries half of its force on either side
+        let share = if face.mirrored { 0.5 } else { 1.0 };
+        Mat::from_fn(count, count, |i, j| share * (difference[i.abs_diff(j)] + sum[i + j]))
     }
 }
 
-fn plane_surface(model: FaceModel, bodies: &[NearBody; 2], x: f64, cell: f64) -> Mat<f64> {
-    let sum: f64 = bodies
-        .iter()
-        .map(|body| {
-            let width = body.bases.first().map_or(1.0, |basis| basis.width());
-            strip_displacement(&body.material, model == FaceModel::PlaneStrain, 0.5 * cell, x, 0.0) / width
-        })
-        .sum();
-    Mat::from_fn(1, 1, |_, _| sum)
-}
+/// Cells along the profile in [`projected_half_space`]: of a solid, whose influence costs more, and of a plane model.
+const PROFILE_POINTS: [usize; 2] = [192, 320];
+/// Cells along the face.
+const FACE_POINTS: usize = 48;
 
-fn plane_depth(model: FaceModel, body: &NearBody, basis: &FaceBasis, x: f64, cell: f64) -> Mat<f64> {
-    let strain = model == FaceModel::PlaneStrain;
-    let value = strip_displacement(&body.material, strain, 0.5 * cell, x, body.depth) / basis.width();
-    Mat::from_fn(1, 1, |_, _| value)
-}
-
-fn solid_surface(bodies: &[NearBody; 2], x: f64, cell: f64, face: &FaceCells, edge_correction: bool) -> Mat<f64> {
-    let count = face.centres.len();
-    let at = |body: &NearBody, z: f64, depth: f64| {
-        rectangle_displacement(&body.material, 0.5 * cell, 0.5 * face.width, x, z, depth)
-    };
-    // one table over the distances that occur on the uniform grid
-    let direct: Vec<f64> =
-        (0..2 * count).map(|k| bodies.iter().map(|b| at(b, k as f64 * face.width, 0.0)).sum()).collect();
-    Mat::from_fn(count, count, |i, j| {
-        let mut value = direct[i.abs_diff(j)];
-        if face.mirrored {
-            value = 0.5 * (value + direct[i + j + 1]);
-        }
-        if edge_correction {
-            for body in bodies {
-                value += edge_part(body, face, i, j, &at);
+/// `P G_half-space P` on one flank: work (m/N) of unit loads in the functions `(m, k)` (row `m * functions + k`, `k` along the face) on the displacements by
+/// unit loads in `(n, l)`, in the finite elements' convention for functions along the face.
+///
+/// The half-space is taken between uniform cells with its exact influence, loads and work by the
+/// functions' means over cells: errors fall with the square of the cell.
+#[must_use]
+pub fn projected_half_space(
+    model: FaceModel,
+    body: &NearBody,
+    profile: &ProfileBasis,
+    face: &FaceBasis,
+    edge_correction: bool,
+) -> Mat<f64> {
+    let functions = face.plane_degrees().len();
+    let n = PROFILE_POINTS[usize::from(!matches!(model, FaceModel::Solid { .. }))];
+    let dx = profile.length() / n as f64;
+    let mut at_cells = Mat::zeros(profile.count(), n);
+    for i in 0..n {
+        for (x, weight) in gauss_rule(4) {
+            let values = profile.values(profile.start() + (i as f64 + 0.5 * (1.0 + x)) * dx);
+            for (m, value) in values.into_iter().enumerate() {
+                at_cells[(m, i)] += 0.5 * weight * value * dx;
             }
         }
-        value
-    })
-}
-
-/// Local difference of the loads mirrored at the free ends of a body's face.
-fn edge_part(body: &NearBody, face: &FaceCells, i: usize, j: usize, at: &impl Fn(&NearBody, f64, f64) -> f64) -> f64 {
-    let width = body.bases.first().map_or(0.0, |basis| basis.width());
-    let (z, source) = (face.centres[i], face.centres[j]);
-    let ends: &[f64] = if face.mirrored { &[0.5] } else { &[0.5, -0.5] };
-    // a mirrored cell carries half of its force on either side
-    let share = if face.mirrored { 0.5 } else { 1.0 };
-    ends.iter()
-        .map(|end| {
-            let distance = (2.0 * end * width - source - z).abs();
-            if distance > EDGE_REACH * body.depth {
-                return 0.0;
+    }
+    let along_face = FaceProjection::new(model, body, face, edge_correction);
+    let mut result = Mat::zeros(profile.count() * functions, profile.count() * functions);
+    for d in 0..n {
+        let influence = along_face.at(d as f64 * dx, dx);
+        // sum over all cells `d` apart, one way and the other
+        let (low, high) = (at_cells.as_ref().subcols(0, n - d), at_cells.as_ref().subcols(d, n - d));
+        let one_way = product(low, high.transpose());
+        for p in 0..profile.count() {
+            for q in 0..profile.count() {
+                let weight = if d == 0 { one_way[(p, q)] } else { one_way[(p, q)] + one_way[(q, p)] };
+                for k in 0..functions {
+                    for l in 0..functions {
+                        result[(p * functions + k, q * functions + l)] += weight * influence[(k, l)];
+                    }
+                }
             }
-            share * (at(body, distance, 0.0) - at(body, distance, body.depth))
-        })
-        .sum()
+        }
+    }
+    result
 }
 
-/// `M^-1 [ iint psi(z) g(x, z - z'; h) psi(z') ] M^-1` over the body's face.
-fn solid_depth(body: &NearBody, basis: &FaceBasis, x: f64, cell: f64) -> Mat<f64> {
-    let width = basis.width();
-    let count = ((3.0 * width / body.depth).ceil() as usize).clamp(16, 400);
-    let dz = width / count as f64;
-    let kernel: Vec<f64> = (0..count)
-        .map(|k| rectangle_displacement(&body.material, 0.5 * cell, 0.5 * dz, x, k as f64 * dz, body.depth))
-        .collect();
-    let norms = basis.plane_norms();
-    let dual = Mat::from_fn(count, norms.len(), |q, k| {
-        let z = -0.5 * width + (q as f64 + 0.5) * dz;
-        basis.value(basis.plane_degrees()[k], z) * dz / norms[k]
-    });
-    // the kernel as one row of its Toeplitz matrix, mirrored: row q starts at count - 1 - q
-    let mirrored: Vec<f64> = kernel.iter().rev().chain(&kernel[1..]).copied().collect();
-    let spread = Mat::from_fn(count, norms.len(), |q, k| {
-        let row = &mirrored[count - 1 - q..2 * count - 1 - q];
-        row.iter().zip(column_slice(&dual, k)).map(|(g, d)| g * d).sum::<f64>()
-    });
-    crate::linalg::product(dual.transpose(), spread.as_ref())
+/// The half-space's influence on the functions along the face.
+struct FaceProjection<'a> {
+    model: FaceModel,
+    body: &'a NearBody,
+    edge_correction: bool,
+    /// Functions at the centres of cells, over their norms (points x functions).
+    dual: Mat<f64>,
+}
+
+impl<'a> FaceProjection<'a> {
+    fn new(model: FaceModel, body: &'a NearBody, face: &FaceBasis, edge_correction: bool) -> Self {
+        let norms = face.plane_norms();
+        let dz = body.width / FACE_POINTS as f64;
+        let dual = Mat::from_fn(FACE_POINTS, norms.len(), |q, k| {
+            let z = -0.5 * body.width + (q as f64 + 0.5) * dz;
+            face.value(face.plane_degrees()[k], z) * dz / norms[k]
+        });
+        Self { model, body, edge_correction, dual }
+    }
+
+    /// Between lines of the profile `x` apart, loads spread over `dx`.
+    fn at(&self, x: f64, dx: f64) -> Mat<f64> {
+        let material = &self.body.material;
+        if !matches!(self.model, FaceModel::Solid { .. }) {
+            let value = strip_displacement(material, self.model == FaceModel::PlaneStrain, 0.5 * dx, x, 0.0);
+            return Mat::from_fn(1, 1, |_, _| value / self.body.width);
+        }
+        let count = FACE_POINTS;
+        let dz = self.body.width / count as f64;
+        let reach = if self.edge_correction { 2 * count } else { count };
+        let kernel: Vec<f64> =
+            (0..reach).map(|k| rectangle_displacement(material, 0.5 * dx, 0.5 * dz, x, k as f64 * dz, 0.0)).collect();
+        let influence = Mat::from_fn(count, count, |i, j| {
+            let mut value = kernel[i.abs_diff(j)];
+            if self.edge_correction {
+                value += kernel[i + j + 1] + kernel[2 * count - 1 - i - j];
+            }
+            value
+        });
+        let spread = product(influence.as_ref(), self.dual.as_ref());
+        product(self.dual.transpose(), spread.as_ref())
+    }
 }

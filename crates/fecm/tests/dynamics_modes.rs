@@ -133,7 +133,7 @@ fn a_hub_lighter_than_its_modes_is_refused() {
     assert!(error.to_string().contains("or keep no elastic modes"), "{error}");
 }
 
-/// Modes move the surface, the static compliance reads at matching depth: what is left for the residual must keep its sign, for steps short and long.
+/// Modes move the surface with what a few of them resolve: what is left for the residual must keep its sign, for steps short and long.
 #[test]
 fn extreme_many_modes_and_small_steps() {
     let model = model();

@@ -197,13 +197,13 @@ impl Outline<'_> {
     }
 }
 
-/// Meshes one gear of a pair as it stands at a mesh cycle, contact elements of about `finest` (m).
+/// Meshes one gear of a pair as it stands at a mesh cycle, contact elements of about `finest` (m), all others scaled by `bulk`.
 pub fn whole_gear(
     pair: &GearPair,
     member: Member,
     pairs: &[i32],
     mesh_cycle: f64,
-    finest: f64,
+    (finest, bulk): (f64, f64),
     crack: Option<&CrackPath>,
 ) -> anyhow::Result<TriangleMesh> {
     let gear = pair.gear(member);
@@ -230,7 +230,7 @@ pub fn whole_gear(
     let size = |point: Point2<f64>| {
         let distance = focuses.iter().map(|c| (c - point).norm()).fold(f64::INFINITY, f64::min);
         // uniform over three sizes around the contact, growing beyond
-        (finest + GROWTH * (distance - 6.0 * finest).max(0.0)).min(COARSEST * gear.module())
+        (finest + bulk * GROWTH * (distance - 6.0 * finest).max(0.0)).min(bulk * COARSEST * gear.module())
     };
     let mut boundary: Vec<Place> = Vec::new();
     for tooth in first..first + teeth {
@@ -240,7 +240,7 @@ pub fn whole_gear(
             for segment in segments {
                 let ends = if upper { [1.0, 0.0] } else { [0.0, 1.0] };
                 let most = match segment {
-                    OutlineSegment::Fillet => FILLET * gear.module(),
+                    OutlineSegment::Fillet => bulk * FILLET * gear.module(),
                     OutlineSegment::TipRound => gear.tip_round(),
                     _ => f64::INFINITY,
                 };

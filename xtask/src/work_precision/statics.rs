@@ -54,7 +54,7 @@ pub fn run() -> anyhow::Result<()> {
             text: format!(
                 "Written by `cargo xtask work-precision statics`. One parameter varied at a time, the others at their defaults; {POSITIONS} positions of a mesh\n\
                  cycle; root-mean-square error relative to the mean, against element order {}, density {}, {} cells per half width, {} face cells, face\n\
-                 model {:?} ({time:.1} s). Matching depth varied shows that it does not matter.",
+                 model {:?} ({time:.1} s).",
                 scene.reference.pinion.mesh.order,
                 scene.reference.pinion.mesh.density,
                 scene.reference.contact.cells_per_half_width,
@@ -124,8 +124,8 @@ fn choices(scene: &Scene) -> Vec<(String, String, PairModelOptions)> {
     for cells in [2.0, 3.0, 4.0, 6.0, 8.0, 12.0] {
         add("cells per half width", cells.to_string(), &|o| o.contact.cells_per_half_width = cells);
     }
-    for depth in [0.08, 0.15, 0.3] {
-        add("matching depth (modules)", depth.to_string(), &|o| o.contact.matching_depth = depth);
+    for order in [4, 6, 8, 10, 12, 14] {
+        add("profile order", order.to_string(), &|o| o.contact.profile_order = order);
     }
     if matches!(scene.default.face, FaceModel::Solid { .. }) {
         for cells in [6, 12, 24, 48] {

@@ -1,35 +1,35 @@
-//! A gear as the contact problem sees it: compliance from normal loads on the flanks to displacements at matching depth.
+//! A gear as the contact problem sees it: compliance from normal loads on the flanks to displacements of the flanks.
 //!
-//! One sector is meshed and condensed ([`crate::condense`]), every damaged tooth one more, and the ring is closed ([`ring`]). Unit loads at the flank
-//! nodes of a tooth then give two kinds of dense matrix, per symmetry family along the face:
+//! One sector is meshed and condensed ([`crate::condense`]), every damaged tooth one more, and the ring is closed ([`ring`]). Unit loads on the flank
+//! of a tooth, polynomials along the profile and the face, then give two kinds of small dense matrix, per symmetry family along the face:
 //!
-//! * *own*: displacement of the nodes around the matching depth below the same flank,
+//! * *own*: displacement of the same flank in the same functions,
 //!   `K_II^-1 + X G X^T` with `G` the closed ring's compliance on the two cuts of the sector;
 //! * *cross*: displacement of the flank of a neighbour, `X G_d X^T` - rim and hub coupling.
 //!
-//! A [`Station`] is a profile position; its load is spread over the flank nodes of its element edge, and its displacement is read
-//! at depth `h` below it inside the element that holds the point. Loads and displacements along the inward normal are
+//! A [`Station`] is a profile position: the profile's functions there. Loads and displacements along the inward normal are
 //! positive. Stations and functions along the face stay separate (`station * functions + function`), so that a contact
-//! grid of any resolution is two small products.
+//! grid of any resolution is two small products. What the near field has in full resolution is taken out of *own*: [`GearBody::remainder`].
 //!
 //! Near damaged teeth matrices are made when first asked for: a scene pays for the teeth that its contact reaches.
 
 pub mod ring;
 pub mod tooth;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use faer::Mat;
 use gear_geom::{FlankSide, Gear, RootCrack};
-use nalgebra::{Point2, Rotation2, Vector2};
+use nalgebra::Rotation2;
 
 use crate::error::FecmError;
 use crate::face::{FaceBasis, FaceModel, Parity};
-use crate::linalg::{add_product, add_scaled, column_slice, column_slice_mut, product, symmetrise};
+use crate::linalg::{add_product, product, symmetrise};
 use crate::mass::BodyInertia;
 use crate::material::Material;
 use crate::mesh::MeshDensity;
+use crate::nearfield::{NearBody, projected_half_space};
 use ring::RingCompliance;
 pub use tooth::{SectorFamily, Station, ToothSector};
 
@@ -60,8 +60,10 @@ pub struct BodyOptions {
     pub width: f64,
     /// Bore condition.
     pub bore: BoreCondition,
-    /// Depth below the flank at which the finite-element displacement is taken (m).
-    pub matching_depth: f64,
+    /// Highest degree of the polynomials along the profile in which finite elements and contact exchange loads and displacements.
+    pub profile_order: usize,
+    /// Whether the near field's half-space has mirror loads at the free ends of the face.
+    pub edge_correction: bool,
     /// Number of neighbouring teeth on either side whose coupling is kept.
     pub reach: usize,
     /// Whether loads that are not symmetric about mid-face can occur.
@@ -89,6 +91,8 @@ pub struct Family {
     pub basis: FaceBasis,
     /// Compliance on the cuts.
     pub ring: RingCompliance,
+    /// What the near field's half-space says of a flank, in the layout of *own*.
+    half_space: Arc<Mat<f64>>,
     /// Between two healthy teeth far from damage: own at 0, then the neighbours ahead.
     healthy: Vec<Arc<Mat<f64>>>,
 }
@@ -125,7 +129,6 @@ pub struct GearBody {
     damaged: BTreeMap<i32, ToothSector>,
     teeth: i32,
     reach: i32,
-    depth: f64,
     hub: Hub,
     near_damage: Cache,
 }
@@ -174,7 +177,6 @@ impl GearBody {
             damaged: BTreeMap::new(),
             teeth,
             reach,
-            depth: options.matching_depth,
             hub: Hub { springs, soft, radius: gear.rim_radius() },
             near_damage: Mutex::default(),
         };
@@ -186,7 +188,10 @@ impl GearBody {
                     Arc::new(body.matrix(index, &basis, &ring.pair(offset, 0), &body.healthy, &body.healthy, offset))
                 })
                 .collect();
-            body.families.push(Family { basis, ring, healthy: matrices });
+            let near = NearBody { material: *material, width: options.width };
+            let half_space =
+                projected_half_space(options.face, &near, body.healthy.profile(), &basis, options.edge_correction);
+            body.families.push(Family { basis, ring, half_space: Arc::new(half_space), healthy: matrices });
         }
         if options.cracks.is_empty() { Ok(body) } else { body.with_cracks(gear, options, name) }
     }
@@ -227,7 +232,12 @@ impl GearBody {
             let healthy = self.healthy.families[index].condensed.stiffness();
             let farthest = (2 * self.reach + DAMAGE_MARGIN) as usize;
             let ring = family.ring.with_damage(healthy, &changed, farthest)?;
-            families.push(Family { basis: family.basis.clone(), ring, healthy: family.healthy.clone() });
+            families.push(Family {
+                basis: family.basis.clone(),
+                ring,
+                half_space: Arc::clone(&family.half_space),
+                healthy: family.healthy.clone(),
+            });
         }
         Ok(Self {
             material: self.material,
@@ -238,7 +248,6 @@ impl GearBody {
             damaged,
             teeth: self.teeth,
             reach: self.reach,
-            depth: self.depth,
             hub: self.hub,
             near_damage: Mutex::default(),
         })
@@ -256,12 +265,6 @@ impl GearBody {
             cut_unknowns: self.healthy.families.iter().map(|f| f.condensed.stiffness().nrows() / 2).sum(),
             factor_entries: families().map(|f| f.condensed.factor_entries()).sum(),
         }
-    }
-
-    /// Matching depth (m).
-    #[must_use]
-    pub fn matching_depth(&self) -> f64 {
-        self.depth
     }
 
     /// Teeth on either side of a cracked one whose compliance feels the crack.
@@ -311,26 +314,47 @@ impl GearBody {
         self.damaged.keys().copied()
     }
 
-    /// Normal displacement by unit normal loads at the `loaded` stations of a tooth (m/N), in the functions along the face of a family. On
-    /// the same tooth it is the one at depth below the `observed` stations, symmetric; on another tooth that of its flank. Zero beyond
-    /// the reach.
+    /// Normal displacement by unit normal loads at the `loaded` stations of a tooth (m/N), in the functions along the face of a family: the finite
+    /// elements' part, polynomial along the profile. Zero beyond the reach.
     #[must_use]
     pub fn compliance(&self, family: usize, observed: (i32, &[Station]), loaded: (i32, &[Station])) -> Mat<f64> {
-        let functions = self.families[family].basis.plane_degrees().len();
-        let offset = self.families[family].ring.offset(observed.0, loaded.0);
-        if offset == 0 {
-            let matrix = self.matrix_between(family, loaded.0, 0);
-            let mut result = contract(&matrix, functions, observed.1, loaded.1, |s| &s.depth);
-            symmetrise(&mut result);
-            result
-        } else if offset.abs() > self.reach {
-            Mat::zeros(observed.1.len() * functions, loaded.1.len() * functions)
-        } else if offset > 0 {
-            contract(&self.matrix_between(family, loaded.0, offset), functions, observed.1, loaded.1, |s| &s.load)
-        } else {
-            let matrix = self.matrix_between(family, observed.0, -offset);
-            contract(&matrix, functions, loaded.1, observed.1, |s| &s.load).transpose().to_owned()
+        self.between_stations(family, observed, loaded, false)
+    }
+
+    /// [`Self::compliance`] less what the near field's half-space has of it: on the same tooth the rest that the half-space lacks.
+    #[must_use]
+    pub fn remainder(&self, family: usize, observed: (i32, &[Station]), loaded: (i32, &[Station])) -> Mat<f64> {
+        self.between_stations(family, observed, loaded, true)
+    }
+
+    fn between_stations(
+        &self,
+        family: usize,
+        observed: (i32, &[Station]),
+        loaded: (i32, &[Station]),
+        without_half_space: bool,
+    ) -> Mat<f64> {
+        let own = &self.families[family];
+        let functions = own.basis.plane_degrees().len();
+        let offset = own.ring.offset(observed.0, loaded.0);
+        if offset.abs() > self.reach {
+            return Mat::zeros(observed.1.len() * functions, loaded.1.len() * functions);
         }
+        if offset < 0 {
+            let matrix = self.matrix_between(family, observed.0, -offset);
+            return at_stations(&matrix, functions, loaded.1, observed.1).transpose().to_owned();
+        }
+        let matrix = self.matrix_between(family, loaded.0, offset);
+        let mut result = if offset == 0 && without_half_space {
+            at_stations(&(&*matrix - &*own.half_space), functions, observed.1, loaded.1)
+        } else {
+            at_stations(&matrix, functions, observed.1, loaded.1)
+        };
+        if offset == 0 && std::ptr::eq(observed.1, loaded.1) {
+            // but for rounding it is already
+            symmetrise(&mut result);
+        }
+        result
     }
 
     /// The matrix from loads on a tooth to the one `offset >= 0` ahead.
@@ -364,18 +388,17 @@ impl GearBody {
         offset: i32,
     ) -> Mat<f64> {
         let (own, source) = (&observed.families[family], &loaded.families[family]);
+        let spread = product(own.at_flank.as_ref(), pair.as_ref());
         let mut matrix = if offset == 0 {
-            let spread = product(own.at_depth.as_ref(), pair.as_ref());
             let mut matrix = own.base.clone();
             add_product(matrix.as_mut(), 1.0, spread.as_ref(), source.at_flank.transpose());
+            symmetrise(&mut matrix);
             matrix
         } else {
-            let spread = product(own.at_flank.as_ref(), pair.as_ref());
             product(spread.as_ref(), source.at_flank.transpose())
         };
         if let Some(stiffness) = self.hub.soft {
-            let places = if offset == 0 { observed.depth_points() } else { observed.flank_points() };
-            self.remove_hub_motion(stiffness, basis, &mut matrix, &places, &loaded.flank_points(), offset);
+            self.remove_hub_motion(stiffness, basis, &mut matrix, [observed, loaded], offset);
         }
         matrix
     }
@@ -388,14 +411,12 @@ impl GearBody {
         stiffness: f64,
         basis: &FaceBasis,
         matrix: &mut Mat<f64>,
-        observed: &[Point2<f64>],
-        flank: &[Point2<f64>],
+        [observed, loaded]: [&ToothSector; 2],
         offset: i32,
     ) {
         let (radius, width) = (self.hub.radius, basis.width());
         let area = 2.0 * std::f64::consts::PI * radius * width;
         let degrees = basis.plane_degrees();
-        let count = 2 * degrees.len();
         let turn = Rotation2::new(-self.healthy.shape.sector_angle * f64::from(offset));
         for (k, &degree) in degrees.iter().enumerate() {
             // functions 1 and 2 z / b carry rigid motion: translation and rotation, or tilt
@@ -407,16 +428,10 @@ impl GearBody {
                 }
                 _ => continue,
             };
-            for (i, at) in observed.iter().enumerate() {
-                for (j, from) in flank.iter().enumerate() {
-                    for c in 0..2 {
-                        let force = if c == 0 { Vector2::x() } else { Vector2::y() };
-                        let moment = from.x * force.y - from.y * force.x;
-                        let spin = Vector2::new(-at.y, at.x) * (moment * rotation);
-                        let motion = turn * force * translation + spin;
-                        matrix[(i * count + 2 * k, j * count + 2 * k + c)] -= motion.x;
-                        matrix[(i * count + 2 * k + 1, j * count + 2 * k + c)] -= motion.y;
-                    }
+            for (i, (at_force, at_moment)) in observed.resultants().into_iter().enumerate() {
+                for (j, (force, moment)) in loaded.resultants().into_iter().enumerate() {
+                    let work = at_force.dot(&(turn * force)) * translation + at_moment * moment * rotation;
+                    matrix[(i * degrees.len() + k, j * degrees.len() + k)] -= work;
                 }
             }
         }
@@ -441,42 +456,21 @@ fn springs(bore: BoreCondition, material: &Material, gear: &Gear) -> Result<(Opt
     }
 }
 
-/// `observed^T matrix loaded` with the stations' weights, functions along the face kept apart. Stations share few nodes: each column of a
-/// loaded node is first read by all observed stations, once.
-fn contract(
-    matrix: &Mat<f64>,
-    functions: usize,
-    observed: &[Station],
-    loaded: &[Station],
-    rows: impl Fn(&Station) -> &Vec<(usize, Vector2<f64>)>,
-) -> Mat<f64> {
-    let height = observed.len() * functions;
-    let read = |column: usize| -> Vec<f64> {
-        let source = column_slice(matrix, column);
-        let mut target = vec![0.0; height];
-        for (station, target) in observed.iter().zip(target.chunks_exact_mut(functions)) {
-            for &(slot, weight) in rows(station) {
-                let at = 2 * slot * functions;
-                for (value, motion) in target.iter_mut().zip(source[at..at + 2 * functions].chunks_exact(2)) {
-                    *value += weight.x * motion[0] + weight.y * motion[1];
+/// `(Phi_o x 1) matrix (Phi_l x 1)^T` with the profile's functions `Phi` at stations, functions along the face kept apart.
+fn at_stations(matrix: &Mat<f64>, functions: usize, observed: &[Station], loaded: &[Station]) -> Mat<f64> {
+    let count = matrix.ncols() / functions;
+    let phi = |stations: &[Station]| Mat::from_fn(stations.len(), count, |i, m| stations[i].values[m]);
+    let (at_observed, at_loaded) = (phi(observed), phi(loaded));
+    let mut result = Mat::zeros(observed.len() * functions, loaded.len() * functions);
+    for k in 0..functions {
+        for l in 0..functions {
+            let part = Mat::from_fn(count, count, |m, n| matrix[(m * functions + k, n * functions + l)]);
+            let half = product(at_observed.as_ref(), part.as_ref());
+            let whole = product(half.as_ref(), at_loaded.transpose());
+            for j in 0..loaded.len() {
+                for i in 0..observed.len() {
+                    result[(i * functions + k, j * functions + l)] = whole[(i, j)];
                 }
-            }
-        }
-        target
-    };
-    let slots: BTreeSet<usize> = loaded.iter().flat_map(|station| station.load.iter().map(|(slot, _)| *slot)).collect();
-    let by_slot: BTreeMap<usize, Vec<Vec<f64>>> = slots
-        .into_iter()
-        .map(|slot| (slot, (0..2 * functions).map(|k| read(2 * slot * functions + k)).collect()))
-        .collect();
-    let mut result = Mat::zeros(height, loaded.len() * functions);
-    for (j, station) in loaded.iter().enumerate() {
-        for &(slot, weight) in &station.load {
-            let columns = by_slot[&slot].chunks_exact(2);
-            for (k, pair) in columns.enumerate() {
-                let target = column_slice_mut(&mut result, j * functions + k);
-                add_scaled(target, weight.x, &pair[0]);
-                add_scaled(target, weight.y, &pair[1]);
             }
         }
     }

@@ -1,9 +1,8 @@
 //! One kind of tooth sector: healthy, or with a crack of its own.
 //!
-//! A sector is meshed and condensed onto its two cuts. Unit loads at its flank nodes give, with the cuts held, the displacements at its depth nodes
-//! (`base`), and the shapes that carry cut displacements to depth and flank (`at_depth`, `at_flank`).
-
-use std::collections::HashMap;
+//! A sector is meshed and condensed onto its two cuts. Loads on its flank are normal and vary as the polynomials of [`ProfileBasis`] along the profile and
+//! of the face's basis across it. Unit loads give, with the cuts held, the displacements of the flank in the same functions (`base`), and
+//! the shapes that carry cut displacements to the flank (`at_flank`).
 
 use faer::{Mat, MatRef};
 use gear_geom::{FlankSide, Gear, RootCrack};
@@ -11,36 +10,32 @@ use nalgebra::{Point2, Vector2};
 
 use super::BodyOptions;
 use crate::condense::CondensedBody;
-use crate::element::ReferenceQuad;
+use crate::element::lagrange::{LagrangeBasis, gauss_rule};
 use crate::error::FecmError;
 use crate::face::FaceBasis;
+use crate::linalg::symmetrise;
 use crate::mesh::SectorMesh;
+use crate::profile_basis::ProfileBasis;
 
 /// A profile position on a flank.
 #[derive(Debug, Clone)]
 pub struct Station {
-    /// Flank node columns and their weights for a unit normal load: `(node slot, x weight, y weight)`.
-    pub(crate) load: Vec<(usize, Vector2<f64>)>,
-    /// Depth node rows and their weights for the normal displacement.
-    pub(super) depth: Vec<(usize, Vector2<f64>)>,
+    /// The profile's functions there (1/sqrt(m)): how a unit normal load is spread, and how the normal displacement is read.
+    pub(crate) values: Vec<f64>,
 }
 
 /// One symmetry family of a sector.
 pub struct SectorFamily {
     /// The condensed sector.
     pub condensed: CondensedBody,
-    /// Interior rows and weights of every flank unknown: of slot `s` and function `d` at `s * functions + d`.
+    /// Interior rows and weights of every flank unknown: of profile function `m` and function `k` along the face at `m * functions + k`. Inward
+    /// displacements are positive.
     flank: Vec<Vec<(usize, f64)>>,
-    /// Depth displacements by unit flank loads with the cuts held.
+    /// Flank displacements by unit flank loads with the cuts held.
     pub(super) base: Mat<f64>,
-    /// Rows of `X` at the flank nodes: displacement by unit cut displacement.
+    /// Rows of `X` at the flank unknowns: displacement by unit cut displacement.
     pub(crate) at_flank: Mat<f64>,
-    /// Rows of `X` at the depth nodes.
-    pub(super) at_depth: Mat<f64>,
 }
-
-/// Samples of each flank edge in the search for the elements at matching depth.
-const SAMPLES: u32 = 40;
 
 /// A tooth sector made ready for contact on one flank.
 pub struct ToothSector {
@@ -48,16 +43,11 @@ pub struct ToothSector {
     pub shape: SectorMesh,
     /// Symmetry families, in the order of the body's.
     pub families: Vec<SectorFamily>,
-    name: &'static str,
     side: FlankSide,
-    quad: ReferenceQuad,
-    depth: f64,
-    base_radius: f64,
-    flank_slots: HashMap<u32, usize>,
-    /// Node of each flank slot.
-    flank_nodes: Vec<u32>,
-    depth_slots: HashMap<u32, usize>,
-    depth_elements: Vec<u32>,
+    line: LagrangeBasis,
+    profile: ProfileBasis,
+    /// By profile function: nodes and weights of the inward normal displacement in it.
+    flank: Vec<Vec<(u32, Vector2<f64>)>>,
 }
 
 impl ToothSector {
@@ -74,18 +64,12 @@ impl ToothSector {
         let mut sector = Self {
             shape: SectorMesh::with_crack(gear, &options.mesh, crack, name)?,
             families: Vec::new(),
-            name,
             side,
-            quad: ReferenceQuad::new(options.mesh.order),
-            depth: options.matching_depth,
-            base_radius: gear.base_radius(),
-            flank_slots: HashMap::new(),
-            flank_nodes: Vec::new(),
-            depth_slots: HashMap::new(),
-            depth_elements: Vec::new(),
+            line: LagrangeBasis::new(options.mesh.order),
+            profile: ProfileBasis::new(gear, options.profile_order),
+            flank: Vec::new(),
         };
-        sector.number_flank();
-        sector.find_depth_elements()?;
+        sector.flank = sector.flank_weights();
         for basis in bases {
             let family = sector.condense(basis, springs)?;
             sector.families.push(family);
@@ -95,75 +79,84 @@ impl ToothSector {
 
     fn condense(&self, basis: &FaceBasis, springs: Option<f64>) -> Result<SectorFamily, FecmError> {
         let condensed = CondensedBody::new(&self.shape.substructure(springs), basis)?;
-        let functions = 2 * basis.plane_degrees().len();
-        let flank = rows(&condensed, &self.flank_nodes, functions);
-        let depth = rows(&condensed, &self.depth_nodes(), functions);
+        let mut flank = Vec::new();
+        for weights in &self.flank {
+            for k in 0..basis.plane_degrees().len() {
+                let mut terms = Vec::new();
+                for &(node, weight) in weights {
+                    for (dof, weight) in [(2 * k, weight.x), (2 * k + 1, weight.y)] {
+                        let of_node = condensed.interior_terms(node, dof).into_iter();
+                        terms.extend(of_node.map(|(row, part)| (row, part * weight)));
+                    }
+                }
+                flank.push(terms);
+            }
+        }
         let mut loads = Mat::zeros(condensed.interior_size(), flank.len());
         for (column, terms) in flank.iter().enumerate() {
             for &(row, weight) in terms {
-                loads[(row, column)] = weight;
+                loads[(row, column)] += weight;
             }
         }
         condensed.solve_interior(&mut loads);
-        let solution = condensed.retained_solution();
-        let base = read(&depth, loads.as_ref());
-        let at_flank = read(&flank, solution);
-        let at_depth = read(&depth, solution);
-        Ok(SectorFamily { condensed, flank, base, at_flank, at_depth })
+        let mut base = read(&flank, loads.as_ref());
+        symmetrise(&mut base);
+        let at_flank = read(&flank, condensed.retained_solution());
+        Ok(SectorFamily { condensed, flank, base, at_flank })
     }
 
-    /// Nodes of the loaded flank, in slot order.
-    pub(crate) fn flank_nodes(&self) -> &[u32] {
-        &self.flank_nodes
+    /// The flank's functions along the profile.
+    #[must_use]
+    pub fn profile(&self) -> &ProfileBasis {
+        &self.profile
     }
 
-    /// Positions of the flank nodes, in slot order.
-    pub(super) fn flank_points(&self) -> Vec<Point2<f64>> {
-        self.flank_nodes.iter().map(|&node| self.shape.mesh.nodes[node as usize]).collect()
-    }
-
-    /// Positions of the depth nodes, in slot order.
-    pub(super) fn depth_points(&self) -> Vec<Point2<f64>> {
-        self.depth_nodes().iter().map(|&node| self.shape.mesh.nodes[node as usize]).collect()
-    }
-
-    fn depth_nodes(&self) -> Vec<u32> {
-        let mut nodes = vec![0; self.depth_slots.len()];
-        for (&node, &slot) in &self.depth_slots {
-            nodes[slot] = node;
-        }
-        nodes
-    }
-
-    fn number_flank(&mut self) {
-        for edge in &self.shape.flank(self.side).edges {
-            for &node in edge {
-                let next = self.flank_slots.len();
-                if *self.flank_slots.entry(node).or_insert(next) == next {
-                    self.flank_nodes.push(node);
+    /// Weights of the inward normal displacement in each profile function, `int phi_m N (-n) da` over the element edges.
+    fn flank_weights(&self) -> Vec<Vec<(u32, Vector2<f64>)>> {
+        let flank = self.shape.flank(self.side);
+        let mut all = vec![Vec::new(); self.profile.count()];
+        let mut shapes = vec![0.0; self.line.points().len()];
+        let rule = gauss_rule(self.line.points().len() + self.profile.count());
+        for (index, (edge, ends)) in flank.edges.iter().zip(flank.arc_breaks.windows(2)).enumerate() {
+            let half = 0.5 * (ends[1] - ends[0]);
+            let mut sums = vec![vec![Vector2::zeros(); edge.len()]; all.len()];
+            for &(xi, weight) in &rule {
+                let (_, normal) = self.on_edge(index, xi);
+                self.line.values_into(xi, &mut shapes);
+                let values = self.profile.values(ends[0] + half * (1.0 + xi));
+                for (sums, value) in sums.iter_mut().zip(values) {
+                    for (sum, shape) in sums.iter_mut().zip(&shapes) {
+                        *sum -= normal * (weight * half.abs() * value * shape);
+                    }
                 }
             }
+            for (all, sums) in all.iter_mut().zip(sums) {
+                all.extend(edge.iter().copied().zip(sums));
+            }
         }
+        all
     }
 
-    /// Element edge, local coordinate, position and outward normal of the flank at an involute arc length.
-    fn locate_on_flank(&self, arc: f64) -> (usize, f64, Point2<f64>, Vector2<f64>) {
-        let flank = self.shape.flank(self.side);
-        let breaks = &flank.arc_breaks;
-        let last = breaks.len() - 1;
-        let forward = breaks[last] > breaks[0];
-        let (low, high) = if forward { (breaks[0], breaks[last]) } else { (breaks[last], breaks[0]) };
-        let arc = arc.clamp(low, high);
-        let after = if forward { breaks.partition_point(|&b| b <= arc) } else { breaks.partition_point(|&b| b >= arc) };
-        let index = after.clamp(1, last) - 1;
-        let xi = 2.0 * (arc - breaks[index]) / (breaks[index + 1] - breaks[index]) - 1.0;
-        let n = self.quad.order() + 1;
+    /// Force and moment about the axis of unit loads in each profile function, in the tooth's frame.
+    pub(super) fn resultants(&self) -> Vec<(Vector2<f64>, f64)> {
+        let of = |weights: &Vec<(u32, Vector2<f64>)>| {
+            weights.iter().fold((Vector2::zeros(), 0.0), |(force, moment), &(node, weight)| {
+                let at = self.shape.mesh.nodes[node as usize];
+                (force + weight, moment + at.x * weight.y - at.y * weight.x)
+            })
+        };
+        self.flank.iter().map(of).collect()
+    }
+
+    /// Position and outward normal at the local coordinate of a flank edge.
+    fn on_edge(&self, index: usize, xi: f64) -> (Point2<f64>, Vector2<f64>) {
+        let n = self.line.points().len();
         let (mut shapes, mut slopes) = (vec![0.0; n], vec![0.0; n]);
-        self.quad.basis().values_into(xi, &mut shapes);
-        self.quad.basis().derivatives_into(xi, &mut slopes);
+        self.line.values_into(xi, &mut shapes);
+        self.line.derivatives_into(xi, &mut slopes);
         let mut position = Vector2::zeros();
         let mut tangent = Vector2::zeros();
-        for ((&node, shape), slope) in flank.edges[index].iter().zip(&shapes).zip(&slopes) {
+        for ((&node, shape), slope) in self.shape.flank(self.side).edges[index].iter().zip(&shapes).zip(&slopes) {
             let point = self.shape.mesh.nodes[node as usize].coords;
             position += point * *shape;
             tangent += point * *slope;
@@ -174,114 +167,60 @@ impl ToothSector {
         if normal.y * outward_y < 0.0 {
             normal = -normal;
         }
-        (index, xi, Point2::from(position), normal)
-    }
-
-    /// Elements that hold points at matching depth, found by sampling the flank.
-    fn find_depth_elements(&mut self) -> Result<(), FecmError> {
-        let breaks = self.shape.flank(self.side).arc_breaks.clone();
-        let mut found = Vec::new();
-        for pair in breaks.windows(2) {
-            // close enough that an element only clipped between two samples can be left to its neighbour
-            for k in 0..=SAMPLES {
-                let arc = pair[0] + (pair[1] - pair[0]) * f64::from(k) / f64::from(SAMPLES);
-                let (_, _, position, normal) = self.locate_on_flank(arc);
-                let target = position - normal * self.depth;
-                // mostly the element of the sample before
-                let last: &[u32] = found.last().map_or(&[], std::slice::from_ref);
-                if self.holds(last, target) {
-                    continue;
-                }
-                let (element, _) = self.locate_in(&self.shape.tooth_elements, target)?;
-                if !found.contains(&element) {
-                    found.push(element);
-                }
-            }
-        }
-        found.sort_unstable();
-        for &element in &found {
-            for &node in self.shape.mesh.element(element as usize) {
-                let next = self.depth_slots.len();
-                self.depth_slots.entry(node).or_insert(next);
-            }
-        }
-        self.depth_elements = found;
-        Ok(())
-    }
-
-    /// Whether one of the elements holds a point without extrapolation.
-    fn holds(&self, elements: &[u32], target: Point2<f64>) -> bool {
-        elements.iter().any(|&element| {
-            let points = self.shape.mesh.element_points(element as usize);
-            self.quad.inverse_map(&points, target).is_some_and(|(xi, eta)| xi.abs().max(eta.abs()) <= 1.0)
-        })
-    }
-
-    /// Element of a list that holds a point, and the local coordinates there.
-    fn locate_in(&self, elements: &[u32], target: Point2<f64>) -> Result<(u32, (f64, f64)), FecmError> {
-        let mut best: Option<(f64, u32, (f64, f64))> = None;
-        for &element in elements {
-            let points = self.shape.mesh.element_points(element as usize);
-            let size = (points[points.len() - 1] - points[0]).norm();
-            let near = points.iter().any(|p| (p - target).norm() < 1.5 * size);
-            if !near {
-                continue;
-            }
-            if let Some((xi, eta)) = self.quad.inverse_map(&points, target) {
-                let excess = xi.abs().max(eta.abs());
-                if best.is_none_or(|(least, _, _)| excess < least) {
-                    best = Some((excess, element, (xi, eta)));
-                }
-                if excess <= 1.0 {
-                    break;
-                }
-            }
-        }
-        match best {
-            Some((excess, element, local)) if excess < 1.05 => Ok((element, local)),
-            _ => Err(FecmError::PointOutsideMesh { body: self.name, x: target.x, y: target.y, depth: self.depth }),
-        }
+        (Point2::from(position), normal)
     }
 
     /// Station at a roll distance (m), clipped to the meshed involute.
-    ///
-    /// # Errors
-    /// [`FecmError::PointOutsideMesh`] when the matching depth leaves the tooth.
-    pub fn station(&self, roll_distance: f64) -> Result<Station, FecmError> {
-        let arc = roll_distance * roll_distance / (2.0 * self.base_radius);
-        let (index, xi, position, normal) = self.locate_on_flank(arc);
-        let mut shapes = vec![0.0; self.quad.order() + 1];
-        self.quad.basis().values_into(xi, &mut shapes);
-        let edge = &self.shape.flank(self.side).edges[index];
-        let load = edge.iter().zip(&shapes).map(|(node, shape)| (self.flank_slots[node], normal * *shape)).collect();
-        let (element, (xi, eta)) = self.locate_in(&self.depth_elements, position - normal * self.depth)?;
-        let (shapes, _) = self.quad.shapes(xi, eta);
-        let nodes = self.shape.mesh.element(element as usize);
-        let depth = nodes.iter().zip(&shapes).map(|(node, shape)| (self.depth_slots[node], normal * *shape)).collect();
-        Ok(Station { load, depth })
+    #[must_use]
+    pub fn station(&self, roll_distance: f64) -> Station {
+        Station { values: self.profile.values(self.profile.arc(roll_distance)) }
+    }
+
+    /// Inward normal unit load of a station as forces on nodes, in the tooth's frame; a node may occur twice.
+    #[must_use]
+    pub fn nodal_load(&self, station: &Station) -> Vec<(u32, Vector2<f64>)> {
+        let of = |(weights, value): (&Vec<(u32, Vector2<f64>)>, &f64)| {
+            weights.iter().map(|&(node, weight)| (node, weight * *value)).collect::<Vec<_>>()
+        };
+        self.flank.iter().zip(&station.values).flat_map(of).collect()
+    }
+
+    /// Displacement of the flank in its functions, `m * functions + k`, of node fields with `block` unknowns a node.
+    pub(crate) fn flank_of_fields(&self, fields: MatRef<'_, f64>, block: usize, functions: usize) -> Mat<f64> {
+        Mat::from_fn(self.flank.len() * functions, fields.ncols(), |row, column| {
+            let (m, k) = (row / functions, row % functions);
+            let of_node = |&(node, weight): &(u32, Vector2<f64>)| {
+                let at = node as usize * block + 2 * k;
+                weight.x * fields[(at, column)] + weight.y * fields[(at + 1, column)]
+            };
+            self.flank[m].iter().map(of_node).sum()
+        })
     }
 
     /// Position and outward normal of the meshed flank at a roll distance (m), in the tooth's frame.
     #[must_use]
     pub fn flank_point(&self, roll_distance: f64) -> (Point2<f64>, Vector2<f64>) {
-        let (_, _, position, normal) = self.locate_on_flank(roll_distance * roll_distance / (2.0 * self.base_radius));
-        (position, normal)
+        let arc = self.profile.arc(roll_distance);
+        let breaks = &self.shape.flank(self.side).arc_breaks;
+        let last = breaks.len() - 1;
+        let forward = breaks[last] > breaks[0];
+        let after = breaks.partition_point(|&b| if forward { b <= arc } else { b >= arc });
+        let index = after.clamp(1, last) - 1;
+        self.on_edge(index, 2.0 * (arc - breaks[index]) / (breaks[index + 1] - breaks[index]) - 1.0)
     }
 
     /// Adds the inward normal load of a station, given in the functions along the face of a family (N), to the loads on its flank unknowns.
     pub fn add_load(station: &Station, modal: &[f64], flank: &mut Mat<f64>) {
-        for &(slot, weight) in &station.load {
+        for (m, value) in station.values.iter().enumerate() {
             for (k, force) in modal.iter().enumerate() {
-                let row = 2 * (slot * modal.len() + k);
-                flank[(row, 0)] -= weight.x * force;
-                flank[(row + 1, 0)] -= weight.y * force;
+                flank[(m * modal.len() + k, 0)] += value * force;
             }
         }
     }
 }
 
 impl SectorFamily {
-    /// Number of flank unknowns: in-plane ones of the loaded flank's nodes.
+    /// Number of flank unknowns: functions along the profile times those along the face.
     #[must_use]
     pub fn flank_size(&self) -> usize {
         self.flank.len()
@@ -305,12 +244,6 @@ impl SectorFamily {
         }
         interior
     }
-}
-
-/// Interior rows and weights of the in-plane unknowns of nodes, those of one node after those of the one before.
-fn rows(condensed: &CondensedBody, nodes: &[u32], functions: usize) -> Vec<Vec<(usize, f64)>> {
-    let of_node = |&node: &u32| (0..functions).map(move |d| condensed.interior_terms(node, d));
-    nodes.iter().flat_map(of_node).filter(|terms| !terms.is_empty()).collect()
 }
 
 /// Weighted sums of rows of a matrix.

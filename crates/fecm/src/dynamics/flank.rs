@@ -33,7 +33,7 @@ impl PairModes {
     }
 
     /// Opening of every cell of a position by unit modal coordinates, cells x modes (pinion's, then wheel's): a flank that moves inward opens.
-    pub fn openings(&self, settled: &Settled, model: &PairModel) -> Result<Mat<f64>, FecmError> {
+    pub fn openings(&self, settled: &Settled, model: &PairModel) -> Mat<f64> {
         let grid = &settled.grid;
         let columns = grid.face.centres.len();
         let count = self.gears.iter().map(|gear| gear.modes.len()).sum();
@@ -49,9 +49,9 @@ impl PairModes {
                 let mut first_cell = 0;
                 for pair in &grid.pairs {
                     let rolls = pair.rows.iter().map(|row| if index == 0 { row.pinion_roll } else { row.wheel_roll });
-                    // modes are those of healthy teeth, whose nodes they number
-                    let stations: Result<Vec<_>, _> = rolls.map(|roll| body.healthy_sector().station(roll)).collect();
-                    let inward = gear.at_stations(family, (pair.pair * step, &stations?));
+                    // modes are those of healthy teeth
+                    let stations: Vec<_> = rolls.map(|roll| body.healthy_sector().station(roll)).collect();
+                    let inward = gear.at_stations(family, (pair.pair * step, &stations));
                     for (row_of_mode, mode) in modes.clone().enumerate() {
                         let target = column_slice_mut(&mut openings, first_mode + mode);
                         for row in 0..pair.rows.len() {
@@ -66,7 +66,7 @@ impl PairModes {
             }
             first_mode += gear.modes.len();
         }
-        Ok(openings)
+        openings
     }
 }
 

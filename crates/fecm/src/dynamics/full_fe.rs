@@ -124,13 +124,13 @@ impl FullGear {
     /// Nodal force of a unit force on a cell, `(row, value)`; also the opening of the cell by nodal displacements.
     fn cell_force(&self, body: &GearBody, tooth: i32, roll: f64) -> Vec<(usize, f64)> {
         let sector = body.healthy_sector();
-        let station = sector.station(roll).unwrap();
         let numbers = &self.numbers[tooth.rem_euclid(body.teeth()) as usize];
-        let (sine, cosine) = (body.sector_angle() * f64::from(tooth)).sin_cos();
+        let turn = nalgebra::Rotation2::new(body.sector_angle() * f64::from(tooth));
         let mut force = Vec::new();
-        for &(slot, weight) in &station.load {
-            let node = numbers[sector.flank_nodes()[slot] as usize];
-            let inward = [sine * weight.y - cosine * weight.x, -sine * weight.x - cosine * weight.y];
+        for (node, weight) in sector.nodal_load(&sector.station(roll)) {
+            let node = numbers[node as usize];
+            let inward = turn * weight;
+            let inward = [inward.x, inward.y];
             for (c, value) in inward.into_iter().enumerate() {
                 if let Some(row) = self.condensed.interior_row(node, c) {
                     force.push((row, value * self.width_value));

@@ -107,7 +107,7 @@ impl Operator {
         let mut step_motion = motion.clone();
         // teeth that meet on their coast flanks deform as they would at rest
         if system.mode_count() > 0 && flanks == Flanks::Drive {
-            modes = flank_modes.openings(&settled, model)?;
+            modes = flank_modes.openings(&settled, model);
             let weights = system.frequencies().iter().zip(&step.modal).map(|(w, a)| 1.0 / (w * w) - 1.0 / a);
             take_out(&mut compliance, &modes, weights);
             let mut divided = modes.clone();

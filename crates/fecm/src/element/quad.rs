@@ -104,33 +104,6 @@ impl ReferenceQuad {
         Point2::from(shapes.iter().zip(nodes).fold(Vector2::zeros(), |sum, (n, p)| sum + p.coords * *n))
     }
 
-    /// Local coordinates of a point, by Newton's method from the element's centre; `None` when it does not converge.
-    #[must_use]
-    pub fn inverse_map(&self, nodes: &[Point2<f64>], target: Point2<f64>) -> Option<(f64, f64)> {
-        let size = (nodes[nodes.len() - 1] - nodes[0]).norm();
-        // coordinates of a small element far from the origin are not known better than this
-        let tolerance = (1e-13 * size).max(8.0 * f64::EPSILON * target.coords.norm());
-        let mut local = Vector2::zeros();
-        for _ in 0..30 {
-            let (shapes, slopes) = self.shapes(local.x, local.y);
-            let mut residual = target.coords;
-            let mut jacobian = Matrix2::zeros();
-            for ((shape, slope), node) in shapes.iter().zip(&slopes).zip(nodes) {
-                residual -= node.coords * *shape;
-                jacobian += node.coords * slope.transpose();
-            }
-            let step = jacobian.try_inverse()? * residual;
-            local += step;
-            if !(local.norm() < 20.0) {
-                return None;
-            }
-            if residual.norm() < tolerance || step.norm() < 1e-13 {
-                return Some((local.x, local.y));
-            }
-        }
-        None
-    }
-
     /// Smallest Jacobian determinant over the quadrature points and corners, and where it is.
     #[must_use]
     pub fn smallest_jacobian(&self, nodes: &[Point2<f64>]) -> (f64, Point2<f64>) {

@@ -98,7 +98,7 @@ struct FamilyShapes {
     /// Its modes.
     range: Range<usize>,
     basis: FaceBasis,
-    /// At the flank nodes: slot, function, component by shape.
+    /// On the flank: profile function, function along the face by shape.
     flank: [Mat<f64>; 2],
     /// Cuts (lower, upper; local axes) by shape.
     cuts: [Mat<f64>; 2],
@@ -198,14 +198,9 @@ impl GearModes {
     pub fn at_station(&self, family: usize, tooth: i32, flank: FlankSide, station: &Station) -> Mat<f64> {
         let Some(shapes) = self.families.get(family) else { return Mat::zeros(0, 0) };
         let functions = shapes.basis.plane_degrees().len();
-        // weights point outward
         let at = |part: &Mat<f64>, shape: usize, k: usize| -> f64 {
             let values = part.col_as_slice(shape);
-            let inward = station.load.iter().map(|&(slot, weight)| {
-                let first = 2 * (slot * functions + k);
-                -(weight.x * values[first] + weight.y * values[first + 1])
-            });
-            inward.sum()
+            station.values.iter().enumerate().map(|(m, value)| value * values[m * functions + k]).sum()
         };
         // the mirror turns one flank into the other
         let odd_sign = if flank == self.side { 1.0 } else { -1.0 };

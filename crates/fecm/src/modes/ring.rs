@@ -109,17 +109,12 @@ impl<'a> FamilyRing<'a> {
             product(self.space.layout.cuts_of_upper(half.mirror).as_ref(), cut)
         });
         let block = self.space.layout.basis.block();
-        let functions = 2 * self.space.layout.basis.plane_degrees().len();
-        let flank_rows: Vec<usize> = sector
-            .flank_nodes()
-            .iter()
-            .flat_map(|&node| (0..functions).map(move |dof| node as usize * block + dof))
-            .collect();
+        let functions = self.space.layout.basis.plane_degrees().len();
         let flank = [0, 1].map(|index| {
             let half = &self.halves[index];
             let mut flank = product(sector.families[family].at_flank.as_ref(), cuts[index].as_ref());
             flank *= faer::Scale(-1.0);
-            let fields = Mat::from_fn(flank_rows.len(), half.held.ncols(), |i, k| half.held[(flank_rows[i], k)]);
+            let fields = sector.flank_of_fields(half.held.as_ref(), block, functions);
             let held = halves[index].as_ref().subrows(half.cut_stiffness.nrows(), half.held.ncols());
             flank += product(fields.as_ref(), held);
             flank

@@ -124,9 +124,9 @@ impl CrackFaces {
     }
 
     /// Cells of the cracks within reach of the loads on a grid, `None` if there are none.
-    pub fn cells(&self, model: &PairModel, grid: &ContactGrid) -> Result<Option<CrackCells>, FecmError> {
+    pub fn cells(&self, model: &PairModel, grid: &ContactGrid) -> Option<CrackCells> {
         if !model.options.contact.crack_face_contact {
-            return Ok(None);
+            return None;
         }
         let in_reach = |crack: &CrackOnTooth, pair: &PairGrid| {
             let ring = &model.bodies[crack.member].families[0].ring;
@@ -141,7 +141,7 @@ impl CrackFaces {
             }
         }
         if cracks.is_empty() {
-            return Ok(None);
+            return None;
         }
         let mut coupling = Mat::zeros(size, grid.size());
         let mut compliance = Mat::zeros(size, size);
@@ -150,7 +150,7 @@ impl CrackFaces {
             let mut column = 0;
             for pair in &grid.pairs {
                 if in_reach(crack, pair) {
-                    let block = self.by_pair(model, *index, grid, pair)?;
+                    let block = self.by_pair(model, *index, grid, pair);
                     add_block(&mut coupling, rows.start, column, 1.0, &block);
                 }
                 column += pair.rows.len() * grid.face.centres.len();
@@ -162,17 +162,11 @@ impl CrackFaces {
             }
         }
         symmetrise(&mut compliance);
-        Ok(Some(CrackCells { cracks, coupling, compliance }))
+        Some(CrackCells { cracks, coupling, compliance })
     }
 
     /// Openings of a crack by unit forces on the cells of a tooth pair.
-    fn by_pair(
-        &self,
-        model: &PairModel,
-        index: usize,
-        grid: &ContactGrid,
-        pair: &PairGrid,
-    ) -> Result<Mat<f64>, FecmError> {
+    fn by_pair(&self, model: &PairModel, index: usize, grid: &ContactGrid, pair: &PairGrid) -> Mat<f64> {
         let crack = &self.cracks[index];
         let body = &model.bodies[crack.member];
         let tooth = model.tooth_of(pair.pair, crack.member);
@@ -184,7 +178,7 @@ impl CrackFaces {
             let values: Vec<Vec<f64>> = grid.face.centres.iter().map(|&z| family.basis.plane_values(z)).collect();
             for (i, row) in pair.rows.iter().enumerate() {
                 let roll = if crack.member == 0 { row.pinion_roll } else { row.wheel_roll };
-                let modal = by_station(&flank, &sector.station(roll)?, family.basis.plane_degrees().len());
+                let modal = by_station(&flank, &sector.station(roll), family.basis.plane_degrees().len());
                 for (j, values) in values.iter().enumerate() {
                     let target = column_slice_mut(&mut block, i * columns + j);
                     values
@@ -194,7 +188,7 @@ impl CrackFaces {
                 }
             }
         }
-        Ok(block)
+        block
     }
 
     /// Openings of a crack by unit loads on the unknowns of a tooth's flank, made once.
@@ -274,12 +268,9 @@ impl CrackOnTooth {
 /// Openings by inward unit normal loads of a station, a column for each of the functions along the face.
 fn by_station(flank: &Mat<f64>, station: &Station, functions: usize) -> Mat<f64> {
     let mut modal = Mat::zeros(flank.nrows(), functions);
-    for &(slot, weight) in &station.load {
+    for (m, value) in station.values.iter().enumerate() {
         for k in 0..functions {
-            let target = column_slice_mut(&mut modal, k);
-            for (c, share) in [weight.x, weight.y].into_iter().enumerate() {
-                add_scaled(target, -share, column_slice(flank, 2 * (slot * functions + k) + c));
-            }
+            add_scaled(column_slice_mut(&mut modal, k), *value, column_slice(flank, m * functions + k));
         }
     }
     modal

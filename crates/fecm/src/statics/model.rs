@@ -157,8 +157,7 @@ impl PairModel {
         let field = fields.entry(cell.to_bits()).or_insert_with(|| {
             let near = |body: &GearBody| NearBody {
                 material: body.material,
-                bases: body.families.iter().map(|family| family.basis.clone()).collect(),
-                depth: body.matching_depth(),
+                width: body.families.first().map_or(0.0, |family| family.basis.width()),
             };
             Arc::new(NearField::new(NearFieldSpec {
                 model: self.options.face,
@@ -225,7 +224,8 @@ fn body_options(pairing: &Pairing, options: &PairModelOptions, symmetric: bool, 
         // a plane model is uniform along the face that carries load
         width: if solid { gear.facewidth() } else { pairing.common_facewidth() },
         bore: member.bore,
-        matching_depth: options.contact.matching_depth * gear.module(),
+        profile_order: options.contact.profile_order,
+        edge_correction: options.contact.edge_correction,
         reach: pairing.most_pairs(),
         antisymmetric: solid && !symmetric,
         cracks: cracks_of(&options.damage[index]),

@@ -33,8 +33,8 @@ pub struct ContactOptions {
     pub cells_per_half_width: f64,
     /// Cells along the whole face, 1 to 400. Plane models have one.
     pub face_cells: usize,
-    /// Matching depth in modules, 0.01 to 2.
-    pub matching_depth: f64,
+    /// Highest degree of the polynomials along the profile in which the finite elements complete the half-space, 2 to 24.
+    pub profile_order: usize,
     /// Whether mirror loads correct the near field at the free ends of the face.
     pub edge_correction: bool,
     /// Relative change of torque for the local slope by differences, 1e-4 to 0.3. Cells join a growing contact one by one, so the tangent and
@@ -53,7 +53,7 @@ impl Default for ContactOptions {
         Self {
             cells_per_half_width: 8.0,
             face_cells: 48,
-            matching_depth: 0.15,
+            profile_order: 8,
             edge_correction: true,
             slope_step: 0.1,
             crack_face_contact: true,
@@ -127,7 +127,7 @@ impl PairModelOptions {
             ("cells per half width", contact.cells_per_half_width, 1.0, 100.0, "1 to 100"),
             ("face cells", contact.face_cells as f64, 1.0, 400.0, "1 to 400"),
             ("slope step", contact.slope_step, 1e-4, 0.3, "1e-4 to 0.3 of the torque"),
-            ("matching depth", contact.matching_depth, 0.01, 2.0, "0.01 to 2 modules"),
+            ("profile order", contact.profile_order as f64, 2.0, 24.0, "2 to 24"),
         ];
         for (name, value, low, high, allowed) in checks {
             if !(low..=high).contains(&value) {

@@ -172,8 +172,8 @@ impl PairModel {
                 _ => {
                     compliance_from = rotation;
                     let bodies = [&*self.bodies[0], &*self.bodies[1]];
-                    let compliance = grid.compliance(bodies, self.pairing.tooth_steps(), &self.near_field(cell))?;
-                    (compliance, self.crack_faces().cells(self, &grid)?)
+                    let compliance = grid.compliance(bodies, self.pairing.tooth_steps(), &self.near_field(cell));
+                    (compliance, self.crack_faces().cells(self, &grid))
                 }
             };
             let active =

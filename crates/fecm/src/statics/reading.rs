@@ -62,7 +62,7 @@ impl PairModel {
                 if pressures.iter().all(|&p| p == 0.0) {
                     continue;
                 }
-                let station = sector.station(*roll)?;
+                let station = sector.station(*roll);
                 for (family, load) in body.families.iter().zip(&mut *loads) {
                     let mut modal = vec![0.0; family.basis.plane_degrees().len()];
                     for (z, pressure) in patch.face.iter().zip(pressures) {

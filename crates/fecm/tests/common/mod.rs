@@ -3,6 +3,7 @@
 #![allow(dead_code, unused_imports)]
 
 pub mod bodies;
+pub mod flank;
 pub mod pairs;
 
 pub use pairs::{TORQUE, gear, pair};

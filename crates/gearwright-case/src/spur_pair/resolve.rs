@@ -321,7 +321,7 @@ pub(crate) fn contact_options(numerics: &Numerics) -> ContactOptions {
     ContactOptions {
         cells_per_half_width: numerics.cells_per_half_width,
         face_cells: numerics.face_cells as usize,
-        matching_depth: numerics.matching_depth_modules,
+        profile_order: numerics.profile_order as usize,
         edge_correction: numerics.edge_correction,
         slope_step: 0.01 * numerics.slope_step_percent,
         crack_face_contact: numerics.crack_face_contact,

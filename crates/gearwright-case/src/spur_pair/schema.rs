@@ -567,9 +567,9 @@ pub struct Numerics {
     /// Contact cells per Hertz half width along the profile.
     #[schemars(range(min = 1.0, max = 100.0))]
     pub cells_per_half_width: f64,
-    /// Depth at which the finite elements take over from the half-space (modules).
-    #[schemars(range(min = 0.01, max = 2.0))]
-    pub matching_depth_modules: f64,
+    /// Highest polynomial order along the profile in which the finite elements complete the half-space.
+    #[schemars(range(min = 2, max = 24))]
+    pub profile_order: u32,
     /// Correct the half-space at the free ends of the face by mirror loads (3d).
     pub edge_correction: bool,
     /// Change of torque either way for the local stiffness by differences (percent). Small steps see the stair of single cells, 10 the slope.
@@ -598,7 +598,7 @@ impl Numerics {
             face_order: 1,
             face_cells: defaults.contact.face_cells as u32,
             cells_per_half_width: defaults.contact.cells_per_half_width,
-            matching_depth_modules: defaults.contact.matching_depth,
+            profile_order: defaults.contact.profile_order as u32,
             edge_correction: defaults.contact.edge_correction,
             slope_step_percent: 100.0 * defaults.contact.slope_step,
             crack_face_contact: defaults.contact.crack_face_contact,
