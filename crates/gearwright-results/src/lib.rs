@@ -17,3 +17,16 @@ pub mod statics;
 pub mod table;
 pub mod transmission;
 pub mod vtu;
+
+use table::TableInfo;
+
+/// Kinds of cases and what the tables of each hold.
+#[must_use]
+pub fn schemas() -> Vec<(&'static str, Vec<TableInfo>)> {
+    vec![
+        ("spur-pair", statics::tables::schemas()),
+        ("lumped-pair", lumped::tables::schemas()),
+        ("dynamics", dynamics::tables::schemas()),
+        ("transmission", transmission::tables::schemas()),
+    ]
+}

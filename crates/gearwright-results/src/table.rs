@@ -192,13 +192,6 @@ impl<'a, R: 'a> Table<'a, R> {
         self
     }
 
-    /// Under another name: one that its file varies by.
-    #[must_use]
-    pub fn named(mut self, name: String) -> Self {
-        self.name = name;
-        self
-    }
-
     /// What it holds.
     #[must_use]
     pub fn info(&self) -> TableInfo {
@@ -209,6 +202,7 @@ impl<'a, R: 'a> Table<'a, R> {
     /// With rows.
     #[must_use]
     pub fn with(self, rows: impl Iterator<Item = R> + 'a) -> FilledTable<'a> {
+        let schema = self.info();
         let mut columns = Vec::new();
         for group in &self.groups {
             for key in keys(group) {
@@ -233,7 +227,7 @@ impl<'a, R: 'a> Table<'a, R> {
             }
             cells
         };
-        FilledTable { info: TableInfo { name, text, columns }, decimals, rows: Box::new(rows.map(cells)) }
+        FilledTable { schema, info: TableInfo { name, text, columns }, decimals, rows: Box::new(rows.map(cells)) }
     }
 }
 
@@ -244,9 +238,9 @@ fn keys<'g, R>(group: &'g Group<'_, R>) -> Vec<Option<(usize, &'g str)>> {
     }
 }
 
-/// A name whose part in angle brackets is replaced.
+/// A name whose part in angle brackets, or from the first of them to the last, is replaced.
 fn in_place(name: &str, key: &str) -> String {
-    match (name.find('<'), name.find('>')) {
+    match (name.find('<'), name.rfind('>')) {
         (Some(from), Some(to)) if from < to => format!("{}{key}{}", &name[..from], &name[to + 1..]),
         _ => name.to_owned(),
     }
@@ -254,6 +248,7 @@ fn in_place(name: &str, key: &str) -> String {
 
 /// A table with its rows; quantities are in the units of its columns.
 pub struct FilledTable<'a> {
+    schema: TableInfo,
     info: TableInfo,
     decimals: Option<usize>,
     rows: Box<dyn Iterator<Item = Vec<Cell>> + 'a>,
@@ -264,6 +259,19 @@ impl<'a> FilledTable<'a> {
     #[must_use]
     pub fn info(&self) -> &TableInfo {
         &self.info
+    }
+
+    /// What it holds, families of columns as one.
+    #[must_use]
+    pub fn schema(&self) -> &TableInfo {
+        &self.schema
+    }
+
+    /// Under another name: with something before or behind its own.
+    #[must_use]
+    pub fn named(mut self, before: &str, behind: &str) -> Self {
+        self.info.name = format!("{before}{}{behind}", self.info.name);
+        self
     }
 
     /// Its rows, in the units of its columns.
@@ -290,8 +298,12 @@ impl<'a> FilledTable<'a> {
     /// # Errors
     /// I/O errors.
     pub fn save(self, folder: &Path) -> Result<(), csv::Error> {
-        let file = std::fs::File::create(folder.join(format!("{}.csv", self.info.name)))?;
-        self.write(io::BufWriter::new(file))
+        let path = folder.join(format!("{}.csv", self.info.name));
+        if let Some(parent) = path.parent() {
+            std::fs::create_dir_all(parent)?;
+        }
+        let file = std::fs::File::create(path)?;
+        self.write(file)
     }
 }
 

@@ -1,12 +1,16 @@
 //! Errors of the crate.
 
 use fecm::FecmError;
+use gear_geom::TrainError;
 use thiserror::Error;
 
 /// What can be wrong with a transmission, or go wrong in it.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PlanetaryError {
+    /// The gears of the stage do not fit.
+    #[error(transparent)]
+    Train(#[from] TrainError),
     /// A number is outside its range.
     #[error("{what} = {value} is not allowed: {allowed}")]
     Value {

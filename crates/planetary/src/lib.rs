@@ -6,6 +6,7 @@
 //! | [`mesh`] | force over approach of a tooth mesh, from contact mechanics or given |
 //! | [`elastic`] | an elastic body as others see it: modes, ports, ring seat, sensors |
 //! | [`housing`] | finite elements of a housing, and its reduction to an elastic body |
+//! | [`stage`] | a planetary stage from its gears |
 //! | [`engine`] | bodies and connections put together, in equilibrium, in free vibration, in time |
 //!
 //! Three planets on a ring that stands, meshes that are springs: the forces at rest, and in time.
@@ -122,5 +123,6 @@ pub mod engine;
 pub mod error;
 pub mod housing;
 pub mod mesh;
+pub mod stage;
 
 pub use error::PlanetaryError;

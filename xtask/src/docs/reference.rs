@@ -1,17 +1,42 @@
-//! Reference of the case files, `docs/reference/KIND.md`, from the schemas: the text of `gearwright explain`, as pages.
+//! Reference of case files, `docs/reference/KIND.md`, from the schemas (the text of `gearwright explain`), and of result tables,
+//! `docs/reference/results-KIND.md`, from their columns.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use gearwright_case::kind::{CaseKind, KINDS};
 use gearwright_case::reference::{KeyReference, keys};
+use gearwright_results::table::TableInfo;
 
 /// Folder of the pages, from the root of the repository.
 const FOLDER: &str = "docs/reference";
 
 /// Every page with its text.
 pub fn pages() -> Vec<(PathBuf, String)> {
-    KINDS.iter().map(|kind| (Path::new(FOLDER).join(format!("{}.md", kind.name)), page(kind))).collect()
+    let file = |name: String| Path::new(FOLDER).join(format!("{name}.md"));
+    let keys = KINDS.iter().map(|kind| (file(kind.name.to_owned()), page(kind)));
+    let results = gearwright_results::schemas();
+    keys.chain(results.iter().map(|(kind, tables)| (file(format!("results-{kind}")), results_page(kind, tables))))
+        .collect()
+}
+
+fn results_page(kind: &str, tables: &[TableInfo]) -> String {
+    let mut out = format!(
+        "# Result tables of kind `{kind}`\n\n<!-- written by `cargo xtask docs` from the columns; do not edit -->\n\nEvery table is a CSV file of the results \
+         folder; which ones there are depends on the case. The parts of names in angle brackets stand for tooth pairs, teeth, sensors and the like.\n"
+    );
+    for table in tables {
+        let _ = write!(
+            out,
+            "\n## `{}.csv`\n\n{}\n\n| column | meaning | unit |\n|---|---|---|\n",
+            table.name,
+            cell(table.text)
+        );
+        for column in &table.columns {
+            let _ = writeln!(out, "| `{}` | {} | {} |", column.name, cell(column.text), column.unit);
+        }
+    }
+    out
 }
 
 fn page(kind: &CaseKind) -> String {

@@ -6,6 +6,8 @@ use std::path::Path;
 use fecm::statics::PairModelOptions;
 use gear_geom::{CentralMember, Gear, PlanetaryTrain, PlanetaryTrainSpec, TrainError, TrainSpeeds};
 
+use planetary::stage::mean_force;
+
 use super::bevel::{BevelStage, bevel};
 use super::damage::{Severity, severities};
 use super::housing::{HousingPlan, plan};
@@ -139,11 +141,7 @@ impl TransmissionCase {
     /// Mean force of one mesh of the planetary stage (N).
     #[must_use]
     pub fn mean_force(&self) -> f64 {
-        let spec = self.train.spec();
-        let [z_s, z_r] = [&spec.sun, &spec.ring].map(|gear| f64::from(gear.teeth()));
-        // T_s = T_c Z_s / (Z_s + Z_r), shared by the planets; the ring's force is the same by the planet's balance
-        let sun_torque = self.inputs.run.torque_n_m * z_s / (z_s + z_r);
-        sun_torque / spec.sun.base_radius() / self.train.planets() as f64
+        mean_force(&self.train, self.inputs.run.torque_n_m)
     }
 }
 

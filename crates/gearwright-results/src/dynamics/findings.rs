@@ -21,6 +21,14 @@ pub struct Dynamics {
     pub times: super::summary::Times,
 }
 
+impl Dynamics {
+    /// Folder of a speed in the results: none where there is one speed.
+    #[must_use]
+    pub fn folder(&self, speed: usize) -> String {
+        if self.speeds.len() == 1 { String::new() } else { format!("speed_{}/", speed + 1) }
+    }
+}
+
 /// One step of a record, in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sample {

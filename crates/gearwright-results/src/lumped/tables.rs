@@ -1,162 +1,192 @@
-//! CSV tables of lumped-parameter dynamics; one row per sample and state, units in the column names, converted here.
+//! Tables of lumped-parameter dynamics.
 
-use std::path::Path;
+use lpm::{BranchPoint, ContactPhase, Measure, Spectrum, Stability};
 
-use lpm::{BranchPoint, ContactPhase, Measure, Stability};
-
-use super::{BranchResult, DamageResult, DamageSpeeds, ImpulseResult, State, SweepResult, TimeResponse};
+use super::{BranchResult, DamageResult, DamageSpeeds, ImpulseResult, Lumped, State, SweepResult, TimeResponse};
+use crate::table::{
+    Column, FilledTable, HERTZ, MICROMETRE, MILLIMETRE_PER_SECOND, NEWTON, NEWTON_PER_MICROMETRE, PLAIN, RADIAN,
+    SECOND, Table, TableInfo, column,
+};
 
 /// Points per mesh cycle of `curves.csv`.
 const CURVE_POINTS: usize = 100;
 
-fn number(value: f64) -> String {
-    format!("{value:.9e}")
-}
-
-fn um(value: f64) -> String {
-    number(value * 1e6)
-}
-
-fn write(path: &Path, header: &[&str], rows: impl Iterator<Item = Vec<String>>) -> Result<(), csv::Error> {
-    let mut table = csv::Writer::from_path(path)?;
-    table.write_record(header)?;
-    for row in rows {
-        table.write_record(row)?;
+/// All tables of a case.
+#[must_use]
+pub fn tables(results: &Lumped) -> Vec<FilledTable<'_>> {
+    let found = &results.findings;
+    let mut all = vec![curves(&results.states)];
+    if !found.time.is_empty() {
+        all.extend([response(&found.time), spectrum(&found.time), contact_loss(&found.time)]);
+        all.extend(found.time.iter().any(|t| !t.tooth_forces.is_empty()).then(|| tooth_forces(&found.time)));
     }
-    table.flush()?;
-    Ok(())
+    all.extend((!found.sweeps.is_empty()).then(|| sweep(&found.sweeps)));
+    all.extend((!found.branches.is_empty()).then(|| branch(&found.branches)));
+    if !found.impulses.is_empty() {
+        all.extend([impulse(&found.impulses), impulse_response(&found.impulses)]);
+    }
+    if !found.damage.is_empty() {
+        all.extend([damage_response(&found.damage), damage_spectrum(&found.damage)]);
+    }
+    all.extend((!found.damage_speeds.is_empty()).then(|| damage_speeds(&found.damage_speeds)));
+    all
 }
 
-/// `curves.csv`: mesh stiffness and static transmission error of every state over its period.
-///
-/// # Errors
-/// I/O errors.
-pub fn curves(path: &Path, states: &[State]) -> Result<(), csv::Error> {
-    let header = ["state", "mesh_cycle", "mesh_stiffness_local_n_per_um", "ste_um"];
-    let rows = states.iter().flat_map(|state| {
-        let excitation = state.model.excitation();
-        (0..CURVE_POINTS * excitation.period()).map(move |i| {
-            let t = i as f64 / CURVE_POINTS as f64;
-            let (k, e) = (excitation.mesh_stiffness().value(t), excitation.transmission_error().value(t));
-            vec![state.name.clone(), number(t), number(k * 1e-6), um(e)]
-        })
-    });
-    write(path, &header, rows)
-}
-
-/// `response.csv`.
-///
-/// # Errors
-/// I/O errors.
-pub fn response(path: &Path, all: &[TimeResponse]) -> Result<(), csv::Error> {
-    let header = [
-        "state",
-        "mesh_cycle",
-        "time_s",
-        "dte_um",
-        "dte_rate_mm_per_s",
-        "mesh_deflection_um",
-        "mesh_force_n",
-        "pinion_bearing_force_n",
-        "gear_bearing_force_n",
+/// What the tables hold.
+#[must_use]
+pub fn schemas() -> Vec<TableInfo> {
+    let all = [
+        curves(&[]),
+        response(&[]),
+        spectrum(&[]),
+        contact_loss(&[]),
+        tooth_forces(&[]),
+        sweep(&[]),
+        branch(&[]),
+        impulse(&[]),
+        impulse_response(&[]),
+        damage_response(&[]),
+        damage_spectrum(&[]),
+        damage_speeds(&[]),
     ];
-    let rows = all.iter().flat_map(|one| {
-        let r = &one.response;
-        (0..r.mesh_cycle.len()).map(move |i| {
-            vec![
-                one.state.clone(),
-                number(r.mesh_cycle[i]),
-                number(r.mesh_cycle[i] / r.mesh_frequency),
-                um(r.transmission_error[i]),
-                number(r.velocity[i] * 1e3),
-                um(r.mesh_deflection[i]),
-                number(r.mesh_force[i]),
-                number(r.pinion_bearing_force[i]),
-                number(r.gear_bearing_force[i]),
-            ]
-        })
-    });
-    write(path, &header, rows)
+    all.iter().map(|table| table.schema().clone()).collect()
 }
 
-/// `spectrum.csv`: amplitudes of the dynamic transmission error.
-///
-/// # Errors
-/// I/O errors.
-pub fn spectrum(path: &Path, all: &[TimeResponse]) -> Result<(), csv::Error> {
-    let header = ["state", "frequency_hz", "mesh_order", "amplitude_um", "phase_rad"];
-    let rows = all.iter().flat_map(|one| {
-        let s = &one.spectrum;
-        (0..s.frequency.len()).map(move |i| {
-            let order = s.frequency[i] / one.response.mesh_frequency;
-            let values = [number(s.frequency[i]), number(order), um(s.amplitude[i]), number(s.phase[i])];
-            std::iter::once(one.state.clone()).chain(values).collect()
-        })
+fn curves(states: &[State]) -> FilledTable<'_> {
+    type Row<'a> = (&'a State, f64);
+    let columns = vec![
+        column("state", PLAIN, "State of the pair.", |(state, _): &Row<'_>| state.name.as_str()),
+        column("mesh_cycle", PLAIN, "Rotation in base pitches.", |(_, at): &Row<'_>| *at),
+        column(
+            "mesh_stiffness_local",
+            NEWTON_PER_MICROMETRE,
+            "Mesh stiffness, slope of force over deflection.",
+            |(state, at): &Row<'_>| state.model.excitation().mesh_stiffness().value(*at),
+        ),
+        column("ste", MICROMETRE, "Static transmission error.", |(state, at): &Row<'_>| {
+            state.model.excitation().transmission_error().value(*at)
+        }),
+    ];
+    let rows = states.iter().flat_map(|state| {
+        let points = CURVE_POINTS * state.model.excitation().period();
+        (0..points).map(move |i| (state, i as f64 / CURVE_POINTS as f64))
     });
-    write(path, &header, rows)
+    Table::new("curves", "Mesh stiffness and static transmission error of every state over its period.", columns)
+        .with(rows)
 }
 
-/// `contact_loss.csv`: stretches without drive contact.
-///
-/// # Errors
-/// I/O errors.
-pub fn contact_loss(path: &Path, all: &[TimeResponse]) -> Result<(), csv::Error> {
-    let header = ["state", "from_mesh_cycle", "to_mesh_cycle", "contact"];
-    let rows = all.iter().flat_map(|one| {
-        one.response.separations.iter().map(move |s| {
-            let contact = if s.phase == ContactPhase::Coast { "coast flanks" } else { "none" };
-            vec![one.state.clone(), number(s.start), number(s.end), contact.into()]
-        })
-    });
-    write(path, &header, rows)
+fn response(all: &[TimeResponse]) -> FilledTable<'_> {
+    type Row<'a> = (&'a TimeResponse, usize);
+    let columns = vec![
+        column("state", PLAIN, "State of the pair.", |(one, _): &Row<'_>| one.state.as_str()),
+        column("mesh_cycle", PLAIN, "Rotation in base pitches.", |(one, i): &Row<'_>| one.response.mesh_cycle[*i]),
+        column("time", SECOND, "Time from the start of the record.", |(one, i): &Row<'_>| {
+            one.response.mesh_cycle[*i] / one.response.mesh_frequency
+        }),
+        column("dte", MICROMETRE, "Dynamic transmission error.", |(one, i): &Row<'_>| {
+            one.response.transmission_error[*i]
+        }),
+        column("dte_rate", MILLIMETRE_PER_SECOND, "Its rate.", |(one, i): &Row<'_>| one.response.velocity[*i]),
+        column("mesh_deflection", MICROMETRE, "Deflection of the mesh.", |(one, i): &Row<'_>| {
+            one.response.mesh_deflection[*i]
+        }),
+        column("mesh_force", NEWTON, "Force of the mesh.", |(one, i): &Row<'_>| one.response.mesh_force[*i]),
+        column("pinion_bearing_force", NEWTON, "Force of the pinion's bearing.", |(one, i): &Row<'_>| {
+            one.response.pinion_bearing_force[*i]
+        }),
+        column("gear_bearing_force", NEWTON, "Force of the gear's bearing.", |(one, i): &Row<'_>| {
+            one.response.gear_bearing_force[*i]
+        }),
+    ];
+    let rows = all.iter().flat_map(|one| (0..one.response.mesh_cycle.len()).map(move |i| (one, i)));
+    Table::new("response", "Response over time, one row per sample and state.", columns).with(rows)
 }
 
-/// `tooth_forces.csv`: force on every loaded tooth pair.
-///
-/// # Errors
-/// I/O errors.
-pub fn tooth_forces(path: &Path, all: &[TimeResponse]) -> Result<(), csv::Error> {
-    let header = ["state", "tooth_pair", "mesh_cycle", "force_n"];
-    let rows = all.iter().flat_map(|one| {
-        one.tooth_forces.iter().map(move |&(sample, pair, force)| {
-            vec![one.state.clone(), pair.to_string(), number(one.response.mesh_cycle[sample]), number(force)]
-        })
-    });
-    write(path, &header, rows)
+fn spectrum(all: &[TimeResponse]) -> FilledTable<'_> {
+    type Row<'a> = (&'a TimeResponse, &'a Spectrum, usize);
+    let columns = vec![
+        column("state", PLAIN, "State of the pair.", |(one, ..): &Row<'_>| one.state.as_str()),
+        column("frequency", HERTZ, "Frequency of the line.", |(_, s, i): &Row<'_>| s.frequency[*i]),
+        column("mesh_order", PLAIN, "Frequency over the mesh frequency.", |(one, s, i): &Row<'_>| {
+            s.frequency[*i] / one.response.mesh_frequency
+        }),
+        column(
+            "amplitude",
+            MICROMETRE,
+            "One-sided amplitude of the dynamic transmission error.",
+            |(_, s, i): &Row<'_>| s.amplitude[*i],
+        ),
+        column("phase", RADIAN, "Its phase.", |(_, s, i): &Row<'_>| s.phase[*i]),
+    ];
+    let rows = all.iter().flat_map(|one| (0..one.spectrum.frequency.len()).map(move |i| (one, &one.spectrum, i)));
+    Table::new("spectrum", "Spectrum of the dynamic transmission error.", columns).with(rows)
 }
 
-const MEASURE: [&str; 7] =
-    ["peak_to_peak_um", "rms_um", "mean_um", "largest_um", "smallest_um", "dynamic_factor", "fraction_without_contact"];
+fn contact_loss(all: &[TimeResponse]) -> FilledTable<'_> {
+    type Row<'a> = (&'a TimeResponse, &'a lpm::Interval);
+    let columns = vec![
+        column("state", PLAIN, "State of the pair.", |(one, _): &Row<'_>| one.state.as_str()),
+        column("from_mesh_cycle", PLAIN, "Loss of drive contact.", |(_, s): &Row<'_>| s.start),
+        column("to_mesh_cycle", PLAIN, "Return of drive contact.", |(_, s): &Row<'_>| s.end),
+        column("contact", PLAIN, "Contact meanwhile: `none`, or `coast flanks`.", |(_, s): &Row<'_>| {
+            if s.phase == ContactPhase::Coast { "coast flanks" } else { "none" }
+        }),
+    ];
+    let rows = all.iter().flat_map(|one| one.response.separations.iter().map(move |s| (one, s)));
+    Table::new("contact_loss", "Stretches without drive contact.", columns).with(rows)
+}
 
-fn measure(m: &Measure) -> [String; 7] {
-    [
-        um(m.peak_to_peak),
-        um(m.rms),
-        um(m.mean),
-        um(m.maximum),
-        um(m.minimum),
-        number(m.dynamic_factor),
-        number(m.separated_fraction),
+fn tooth_forces(all: &[TimeResponse]) -> FilledTable<'_> {
+    type Row<'a> = (&'a TimeResponse, &'a (usize, i32, f64));
+    let columns = vec![
+        column("state", PLAIN, "State of the pair.", |(one, _): &Row<'_>| one.state.as_str()),
+        column("tooth_pair", PLAIN, "Number of the tooth pair.", |(_, f): &Row<'_>| f.1),
+        column("mesh_cycle", PLAIN, "Rotation in base pitches.", |(one, f): &Row<'_>| one.response.mesh_cycle[f.0]),
+        column("force", NEWTON, "Force on the tooth pair.", |(_, f): &Row<'_>| f.2),
+    ];
+    let rows = all.iter().flat_map(|one| one.tooth_forces.iter().map(move |force| (one, force)));
+    Table::new("tooth_forces", "Force on every loaded tooth pair.", columns).with(rows)
+}
+
+/// Columns of what is measured of a periodic motion.
+fn measure<'a, R: 'a>(of: impl Fn(&R) -> &Measure + Copy + 'a) -> Vec<Column<'a, R>> {
+    vec![
+        column("peak_to_peak", MICROMETRE, "Largest minus smallest dynamic transmission error.", move |r| {
+            of(r).peak_to_peak
+        }),
+        column("rms", MICROMETRE, "Root mean square about the mean.", move |r| of(r).rms),
+        column("mean", MICROMETRE, "Mean.", move |r| of(r).mean),
+        column("largest", MICROMETRE, "Largest value.", move |r| of(r).maximum),
+        column("smallest", MICROMETRE, "Smallest value.", move |r| of(r).minimum),
+        column("dynamic_factor", PLAIN, "Largest over mean mesh force.", move |r| of(r).dynamic_factor),
+        column("fraction_without_contact", PLAIN, "Part of the period without drive contact.", move |r| {
+            of(r).separated_fraction
+        }),
     ]
 }
 
-/// `sweep.csv`.
-///
-/// # Errors
-/// I/O errors.
-pub fn sweep(path: &Path, all: &[SweepResult]) -> Result<(), csv::Error> {
-    let header = [&["state", "direction", "mesh_frequency_hz"][..], &MEASURE, &["motion"]].concat();
-    let rows = all.iter().flat_map(|one| {
-        one.points.iter().map(move |p| {
-            let direction = if one.up { "up" } else { "down" };
-            let motion = p.multiple.map_or("not periodic".into(), |n| format!("period {n}"));
-            let mut row = vec![one.state.clone(), direction.into(), number(p.mesh_frequency)];
-            row.extend(measure(&p.measure));
-            row.push(motion);
-            row
-        })
+fn sweep(all: &[SweepResult]) -> FilledTable<'_> {
+    type Row<'a> = (&'a SweepResult, &'a lpm::SweepPoint);
+    let columns = vec![
+        column("state", PLAIN, "State of the pair.", |(one, _): &Row<'_>| one.state.as_str()),
+        column(
+            "direction",
+            PLAIN,
+            "Direction of the sweep: `up` or `down`.",
+            |(one, _): &Row<'_>| {
+                if one.up { "up" } else { "down" }
+            },
+        ),
+        column("mesh_frequency", HERTZ, "Mesh frequency.", |(_, p): &Row<'_>| p.mesh_frequency),
+    ];
+    let motion = column("motion", PLAIN, "Period of the motion in periods of the excitation.", |(_, p): &Row<'_>| {
+        p.multiple.map_or("not periodic".to_owned(), |n| format!("period {n}"))
     });
-    write(path, &header, rows)
+    let rows = all.iter().flat_map(|one| one.points.iter().map(move |p| (one, p)));
+    Table::new("sweep", "Motion at the speeds of every sweep.", columns)
+        .and(measure(|(_, p): &Row<'_>| &p.measure))
+        .and(vec![motion])
+        .with(rows)
 }
 
 /// In words.
@@ -170,134 +200,119 @@ pub fn stability(kind: Stability) -> &'static str {
     }
 }
 
-/// `branch.csv`: points and turning points in order along the branch.
-///
-/// # Errors
-/// I/O errors.
-pub fn branch(path: &Path, all: &[BranchResult]) -> Result<(), csv::Error> {
-    let header =
-        [&["state", "mesh_frequency_hz"][..], &MEASURE, &["stability", "largest_multiplier", "turning_point"]].concat();
+fn branch(all: &[BranchResult]) -> FilledTable<'_> {
+    type Row<'a> = (&'a BranchResult, &'a BranchPoint, bool);
+    let columns = vec![
+        column("state", PLAIN, "State of the pair.", |(one, ..): &Row<'_>| one.state.as_str()),
+        column("mesh_frequency", HERTZ, "Mesh frequency.", |(_, p, _): &Row<'_>| p.mesh_frequency),
+    ];
+    let behind = vec![
+        column("stability", PLAIN, "Stability of the periodic solution.", |(_, p, _): &Row<'_>| stability(p.stability)),
+        column("largest_multiplier", PLAIN, "Modulus of the largest Floquet multiplier.", |(_, p, _): &Row<'_>| {
+            p.multipliers.first().map_or(0.0, lpm::Multiplier::modulus)
+        }),
+        column("turning_point", PLAIN, "Whether the branch turns here.", |(_, _, turns): &Row<'_>| *turns),
+    ];
     let rows = all.iter().flat_map(|one| {
         let turning: Vec<*const BranchPoint> =
             one.branch.turning_points.iter().map(|t| std::ptr::from_ref(&t.point)).collect();
-        one.branch.curve().into_iter().map(move |p| {
-            let turns = turning.contains(&std::ptr::from_ref(p));
-            let largest = p.multipliers.first().map_or(0.0, lpm::Multiplier::modulus);
-            let mut row = vec![one.state.clone(), number(p.mesh_frequency)];
-            row.extend(measure(&p.measure));
-            row.extend([stability(p.stability).into(), number(largest), turns.to_string()]);
-            row
-        })
+        one.branch.curve().into_iter().map(move |p| (one, p, turning.contains(&std::ptr::from_ref(p))))
     });
-    write(path, &header, rows)
+    Table::new("branch", "Points and turning points in order along the branch of periodic solutions.", columns)
+        .and(measure(|(_, p, _): &Row<'_>| &p.measure))
+        .and(behind)
+        .with(rows)
 }
 
-/// `impulse.csv`: what each impulse test reads; empty cells where nothing oscillates.
-///
-/// # Errors
-/// I/O errors.
-pub fn impulse(path: &Path, all: &[ImpulseResult]) -> Result<(), csv::Error> {
-    let header =
-        ["state", "mesh_cycle", "natural_frequency_hz", "damped_frequency_hz", "damping_ratio", "contact_lost"];
-    let rows = all.iter().map(|one| {
-        let read = match &one.test {
-            Some(t) => [
-                number(t.natural_frequency),
-                number(t.damped_frequency),
-                number(t.damping_ratio),
-                (!t.response.separations.is_empty()).to_string(),
-            ],
-            None => std::array::from_fn(|_| String::new()),
-        };
-        [one.state.clone(), number(one.mesh_cycle)].into_iter().chain(read).collect()
-    });
-    write(path, &header, rows)
+fn impulse(all: &[ImpulseResult]) -> FilledTable<'_> {
+    let columns = vec![
+        column("state", PLAIN, "State of the pair.", |one: &&ImpulseResult| one.state.as_str()),
+        column("mesh_cycle", PLAIN, "Position at which the gears stand.", |one: &&ImpulseResult| one.mesh_cycle),
+        column("natural_frequency", HERTZ, "Undamped natural frequency.", |one: &&ImpulseResult| {
+            one.test.as_ref().map(|t| t.natural_frequency)
+        }),
+        column("damped_frequency", HERTZ, "Frequency of the decay.", |one: &&ImpulseResult| {
+            one.test.as_ref().map(|t| t.damped_frequency)
+        }),
+        column("damping_ratio", PLAIN, "Damping ratio.", |one: &&ImpulseResult| {
+            one.test.as_ref().map(|t| t.damping_ratio)
+        }),
+        column("contact_lost", PLAIN, "Whether contact was lost.", |one: &&ImpulseResult| {
+            one.test.as_ref().map(|t| !t.response.separations.is_empty())
+        }),
+    ];
+    Table::new("impulse", "Reading of every impulse test; empty where nothing oscillates.", columns).with(all.iter())
 }
 
-/// `impulse_response.csv`.
-///
-/// # Errors
-/// I/O errors.
-pub fn impulse_response(path: &Path, all: &[ImpulseResult]) -> Result<(), csv::Error> {
-    let header = ["state", "mesh_cycle", "time_s", "dte_um", "mesh_force_n"];
-    let rows = all.iter().flat_map(|one| {
-        one.test.iter().flat_map(move |t| {
-            let r = &t.response;
-            (0..r.mesh_cycle.len()).map(move |i| {
-                let time = r.mesh_cycle[i] / r.mesh_frequency;
-                let values = [one.mesh_cycle, time, r.transmission_error[i] * 1e6, r.mesh_force[i]];
-                std::iter::once(one.state.clone()).chain(values.map(number)).collect()
-            })
-        })
-    });
-    write(path, &header, rows)
-}
-
-/// `damage_response.csv`: healthy, damaged, their difference, and the same at vanishing speed.
-///
-/// # Errors
-/// I/O errors.
-pub fn damage_response(path: &Path, all: &[DamageResult]) -> Result<(), csv::Error> {
-    let header = [
-        "state",
-        "mesh_frequency_hz",
-        "mesh_cycle",
-        "dte_healthy_um",
-        "dte_damaged_um",
-        "difference_um",
-        "static_difference_um",
+fn impulse_response(all: &[ImpulseResult]) -> FilledTable<'_> {
+    type Row<'a> = (&'a ImpulseResult, &'a lpm::Response, usize);
+    let columns = vec![
+        column("state", PLAIN, "State of the pair.", |(one, ..): &Row<'_>| one.state.as_str()),
+        column("mesh_cycle", PLAIN, "Position at which the gears stand.", |(one, ..): &Row<'_>| one.mesh_cycle),
+        column("time", SECOND, "Time from the impulse.", |(_, r, i): &Row<'_>| r.mesh_cycle[*i] / r.mesh_frequency),
+        column("dte", MICROMETRE, "Dynamic transmission error.", |(_, r, i): &Row<'_>| r.transmission_error[*i]),
+        column("mesh_force", NEWTON, "Force of the mesh.", |(_, r, i): &Row<'_>| r.mesh_force[*i]),
     ];
     let rows = all.iter().flat_map(|one| {
-        let r = &one.response;
-        (0..r.difference.len()).map(move |i| {
-            let (healthy, damaged) = (&r.healthy.response, &r.damaged.response);
-            vec![
-                one.state.clone(),
-                number(one.mesh_frequency),
-                number(damaged.mesh_cycle[i]),
-                um(healthy.transmission_error[i]),
-                um(damaged.transmission_error[i]),
-                um(r.difference[i]),
-                um(r.static_difference[i]),
-            ]
-        })
+        let responses = one.test.iter().map(|t| &t.response);
+        responses.flat_map(move |r| (0..r.mesh_cycle.len()).map(move |i| (one, r, i)))
     });
-    write(path, &header, rows)
+    Table::new("impulse_response", "Decay of every impulse test.", columns).with(rows)
 }
 
-/// `damage_spectrum.csv`.
-///
-/// # Errors
-/// I/O errors.
-pub fn damage_spectrum(path: &Path, all: &[DamageResult]) -> Result<(), csv::Error> {
-    let header = ["state", "mesh_frequency_hz", "frequency_hz", "amplitude_um"];
-    let rows = all.iter().flat_map(|one| {
-        let s = &one.response.spectrum;
-        (0..s.frequency.len()).map(move |i| {
-            let values = [one.mesh_frequency, s.frequency[i], s.amplitude[i] * 1e6];
-            std::iter::once(one.state.clone()).chain(values.map(number)).collect()
-        })
-    });
-    write(path, &header, rows)
-}
-
-/// `damage_over_speed.csv`: the largest line of the damage-induced spectrum at every speed.
-///
-/// # Errors
-/// I/O errors.
-pub fn damage_speeds(path: &Path, all: &[DamageSpeeds]) -> Result<(), csv::Error> {
-    let header = [
-        "state",
-        "mesh_frequency_hz",
-        "frequency_of_largest_line_hz",
-        "largest_amplitude_um",
-        "peak_to_peak_um",
-        "static_amplitude_um",
+fn damage_response(all: &[DamageResult]) -> FilledTable<'_> {
+    type Row<'a> = (&'a DamageResult, usize);
+    let columns = vec![
+        column("state", PLAIN, "Damaged state.", |(one, _): &Row<'_>| one.state.as_str()),
+        column("mesh_frequency", HERTZ, "Mesh frequency.", |(one, _): &Row<'_>| one.mesh_frequency),
+        column("mesh_cycle", PLAIN, "Rotation in base pitches.", |(one, i): &Row<'_>| {
+            one.response.damaged.response.mesh_cycle[*i]
+        }),
+        column("dte_healthy", MICROMETRE, "Dynamic transmission error, healthy.", |(one, i): &Row<'_>| {
+            one.response.healthy.response.transmission_error[*i]
+        }),
+        column("dte_damaged", MICROMETRE, "Dynamic transmission error, damaged.", |(one, i): &Row<'_>| {
+            one.response.damaged.response.transmission_error[*i]
+        }),
+        column("difference", MICROMETRE, "Damaged less healthy.", |(one, i): &Row<'_>| one.response.difference[*i]),
+        column("static_difference", MICROMETRE, "The same at vanishing speed.", |(one, i): &Row<'_>| {
+            one.response.static_difference[*i]
+        }),
     ];
-    let rows = all.iter().flat_map(|one| {
-        one.rows.iter().map(move |&[frequency, at, amplitude, peak]| {
-            vec![one.state.clone(), number(frequency), number(at), um(amplitude), um(peak), um(one.static_amplitude)]
-        })
-    });
-    write(path, &header, rows)
+    let rows = all.iter().flat_map(|one| (0..one.response.difference.len()).map(move |i| (one, i)));
+    Table::new("damage_response", "Healthy, damaged, and their difference.", columns).with(rows)
+}
+
+fn damage_spectrum(all: &[DamageResult]) -> FilledTable<'_> {
+    type Row<'a> = (&'a DamageResult, usize);
+    let columns = vec![
+        column("state", PLAIN, "Damaged state.", |(one, _): &Row<'_>| one.state.as_str()),
+        column("mesh_frequency", HERTZ, "Mesh frequency.", |(one, _): &Row<'_>| one.mesh_frequency),
+        column("frequency", HERTZ, "Frequency of the line.", |(one, i): &Row<'_>| one.response.spectrum.frequency[*i]),
+        column("amplitude", MICROMETRE, "Amplitude of the difference.", |(one, i): &Row<'_>| {
+            one.response.spectrum.amplitude[*i]
+        }),
+    ];
+    let rows = all.iter().flat_map(|one| (0..one.response.spectrum.frequency.len()).map(move |i| (one, i)));
+    Table::new("damage_spectrum", "Spectrum of the damage-induced response.", columns).with(rows)
+}
+
+fn damage_speeds(all: &[DamageSpeeds]) -> FilledTable<'_> {
+    type Row<'a> = (&'a DamageSpeeds, &'a [f64; 4]);
+    let columns = vec![
+        column("state", PLAIN, "Damaged state.", |(one, _): &Row<'_>| one.state.as_str()),
+        column("mesh_frequency", HERTZ, "Mesh frequency.", |(_, row): &Row<'_>| row[0]),
+        column("frequency_of_largest_line", HERTZ, "Frequency of the largest line.", |(_, row): &Row<'_>| row[1]),
+        column("largest_amplitude", MICROMETRE, "Its amplitude.", |(_, row): &Row<'_>| row[2]),
+        column("peak_to_peak", MICROMETRE, "Largest minus smallest difference.", |(_, row): &Row<'_>| row[3]),
+        column(
+            "static_amplitude",
+            MICROMETRE,
+            "Largest amplitude of the difference at vanishing speed.",
+            |(one, _): &Row<'_>| one.static_amplitude,
+        ),
+    ];
+    let rows = all.iter().flat_map(|one| one.rows.iter().map(move |row| (one, row)));
+    Table::new("damage_over_speed", "The largest line of the damage-induced spectrum at every speed.", columns)
+        .with(rows)
 }

@@ -1,11 +1,12 @@
-//! What damage does to the mesh, severity by severity: `damage.csv`.
-
-use std::path::Path;
+//! What damage does to the mesh, severity by severity.
 
 use fecm::statics::PositionResult;
 use serde::Serialize;
 
 use super::stress::Stresses;
+use crate::table::{
+    FilledTable, MEGAPASCAL, MICROMETRE, MILLIMETRE, NEWTON, PERCENT, PLAIN, STRESS_INTENSITY, Table, column,
+};
 
 /// Effect of one severity against the healthy pair at the same positions.
 #[derive(Debug, Clone, Serialize)]
@@ -87,15 +88,56 @@ pub fn effect(
     }
 }
 
-/// Writes the table.
-///
-/// # Errors
-/// I/O errors.
-pub fn table(path: &Path, effects: &[Effect]) -> Result<(), csv::Error> {
-    let mut table = csv::Writer::from_path(path)?;
-    for effect in effects {
-        table.serialize(effect)?;
-    }
-    table.flush()?;
-    Ok(())
+/// `damage`: one row per severity.
+pub(super) fn table(effects: &[Effect]) -> FilledTable<'_> {
+    type Row<'a> = &'a Effect;
+    let columns = vec![
+        column("label", PLAIN, "Severity.", |e: &Row<'_>| e.label.as_str()),
+        column("ste_max", MICROMETRE.given(), "Largest transmission error.", |e: &Row<'_>| e.ste_max_um),
+        column("ste_max_at", PLAIN, "Mesh cycle of it.", |e: &Row<'_>| e.ste_max_at),
+        column("ste_increase_max", PERCENT.given(), "Largest increase over the healthy pair.", |e: &Row<'_>| {
+            e.ste_increase_max_percent
+        }),
+        column("ste_increase_max_at", PLAIN, "Mesh cycle of it.", |e: &Row<'_>| e.ste_increase_max_at),
+        column("affected_mesh_cycles", PLAIN, "Mesh cycles with more than 1 % increase.", |e: &Row<'_>| {
+            e.affected_mesh_cycles
+        }),
+        column(
+            "stiffness_decrease_max",
+            PERCENT.given(),
+            "Largest decrease of the local-slope stiffness.",
+            |e: &Row<'_>| e.stiffness_decrease_max_percent,
+        ),
+        column("stiffness_decrease_max_at", PLAIN, "Mesh cycle of it.", |e: &Row<'_>| e.stiffness_decrease_max_at),
+        column("crack_length", MILLIMETRE.given(), "Length of its longest crack along the path.", |e: &Row<'_>| {
+            e.crack_length_mm
+        }),
+        column("k_one_max", STRESS_INTENSITY.given(), "Largest K_I of its cracks.", |e: &Row<'_>| {
+            e.k_one_max_mpa_sqrt_m
+        }),
+        column("k_two_max", STRESS_INTENSITY.given(), "Largest magnitude of K_II.", |e: &Row<'_>| {
+            e.k_two_max_mpa_sqrt_m
+        }),
+        column(
+            "crack_face_force_max",
+            NEWTON.given(),
+            "Largest force between the faces of a crack that closes.",
+            |e: &Row<'_>| e.crack_face_force_max_n,
+        ),
+        column(
+            "pinion_root_tension_max",
+            MEGAPASCAL.given(),
+            "Largest tension at the roots of the pinion's teeth.",
+            |e: &Row<'_>| e.pinion_root_tension_max_mpa,
+        ),
+        column(
+            "gear_root_tension_max",
+            MEGAPASCAL.given(),
+            "Largest tension at the roots of the gear's teeth.",
+            |e: &Row<'_>| e.gear_root_tension_max_mpa,
+        ),
+    ];
+    Table::new("damage", "Effect of every severity of damage against the healthy pair.", columns)
+        .decimals(None)
+        .with(effects.iter())
 }

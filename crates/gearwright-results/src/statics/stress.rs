@@ -1,13 +1,13 @@
 //! Root stresses, stress-intensity factors and forces between crack faces of a series: columns of its table, a table along crack fronts, extremes.
 
 use std::collections::BTreeSet;
-use std::path::Path;
 
 use fecm::FecmError;
 use fecm::statics::{CrackTip, PairModel, PositionResult, RootStress};
 use serde::Serialize;
 
 /// What is read from the stresses of every position of a series.
+#[derive(Default)]
 pub struct Stresses {
     /// Root stresses; empty unless asked for.
     pub roots: Vec<Vec<RootStress>>,
@@ -33,7 +33,7 @@ pub struct LargestRoot {
 }
 
 /// Names of the gears in columns.
-const GEARS: [&str; 2] = ["pinion", "gear"];
+pub(super) const GEARS: [&str; 2] = ["pinion", "gear"];
 /// Pa sqrt(m) to MPa sqrt(m).
 const MEGA: f64 = 1e-6;
 
@@ -108,83 +108,12 @@ impl Stresses {
     }
 
     /// Teeth with cracks: member and tooth.
-    fn cracked(&self) -> BTreeSet<(usize, i32)> {
+    pub(super) fn cracked(&self) -> BTreeSet<(usize, i32)> {
         self.tips.iter().flatten().map(|tip| (tip.member, tip.tooth)).collect()
     }
 
     /// Teeth with cracks whose faces press on each other somewhere.
-    fn closing(&self) -> BTreeSet<(usize, i32)> {
+    pub(super) fn closing(&self) -> BTreeSet<(usize, i32)> {
         self.faces.iter().flatten().map(|&(member, tooth, _)| (member, tooth)).collect()
-    }
-
-    /// Columns for tooth pairs: names.
-    #[must_use]
-    pub fn header(&self, pairs: &BTreeSet<i32>) -> Vec<String> {
-        let mut names = Vec::new();
-        if !self.roots.is_empty() {
-            for pair in pairs {
-                for gear in GEARS {
-                    names.extend(["tension", "compression"].map(|side| format!("pair_{pair}_{gear}_root_{side}_mpa")));
-                }
-            }
-        }
-        for (member, tooth) in self.cracked() {
-            let gear = GEARS[member];
-            names.extend(["one", "two"].map(|mode| format!("{gear}_tooth_{tooth}_k_{mode}_mpa_sqrt_m")));
-        }
-        for (member, tooth) in self.closing() {
-            names.push(format!("{}_tooth_{tooth}_crack_face_force_n", GEARS[member]));
-        }
-        names
-    }
-
-    /// The values of these columns at a position: root stresses 0 without load; the factors where `K_I` is largest along the front.
-    #[must_use]
-    pub fn row(&self, position: usize, pairs: &BTreeSet<i32>) -> Vec<f64> {
-        let mut values = Vec::new();
-        if let Some(roots) = self.roots.get(position) {
-            for &pair in pairs {
-                for member in 0..2 {
-                    let root = roots.iter().find(|root| root.member == member && root.pair == pair);
-                    let both = root.map_or([0.0; 2], |root| [root.tension.stress, root.compression.stress]);
-                    values.extend(both.map(|stress| stress * MEGA));
-                }
-            }
-        }
-        for crack in self.cracked() {
-            let front = self.tips.get(position).into_iter().flatten();
-            let own = front.filter(|tip| (tip.member, tip.tooth) == crack);
-            let most = own.max_by(|a, b| a.k_one.total_cmp(&b.k_one));
-            values.extend(most.map_or([0.0; 2], |tip| [tip.k_one * MEGA, tip.k_two * MEGA]));
-        }
-        for crack in self.closing() {
-            let own = self.faces.get(position).into_iter().flatten().filter(|face| (face.0, face.1) == crack);
-            values.push(own.map(|face| face.2).sum());
-        }
-        values
-    }
-
-    /// Writes the factors along all fronts at all positions; `origin` is added to the mesh cycle.
-    ///
-    /// # Errors
-    /// I/O errors.
-    pub fn write_fronts(&self, path: &Path, series: &[PositionResult], origin: f64) -> Result<(), csv::Error> {
-        let mut table = csv::Writer::from_path(path)?;
-        table.write_record(["mesh_cycle", "on", "tooth", "face_mm", "k_one_mpa_sqrt_m", "k_two_mpa_sqrt_m"])?;
-        for (position, tips) in series.iter().zip(&self.tips) {
-            for tip in tips {
-                let number = |value: f64| format!("{value:.9e}");
-                table.write_record([
-                    number(position.mesh_cycle + origin),
-                    GEARS[tip.member].to_owned(),
-                    tip.tooth.to_string(),
-                    number(tip.face * 1e3),
-                    number(tip.k_one * MEGA),
-                    number(tip.k_two * MEGA),
-                ])?;
-            }
-        }
-        table.flush()?;
-        Ok(())
     }
 }

@@ -25,6 +25,12 @@ impl Unit {
         (self.from_si)(value)
     }
 
+    /// The same unit for values that are in it already.
+    #[must_use]
+    pub const fn given(self) -> Self {
+        Self { from_si: |value| value, ..self }
+    }
+
     /// A name with the unit at its end.
     #[must_use]
     pub fn joined(&self, name: &str) -> String {

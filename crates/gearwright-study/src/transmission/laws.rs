@@ -9,6 +9,7 @@ use gear_geom::{Damage, Member, MeshSite, TrainTooth};
 use planetary::mesh::{
     BevelSlices, DamageWindow, DamagedTooth, MeshLaw, MeshTable, MeshTableData, SlicedMesh, TableOptions, virtual_table,
 };
+use planetary::stage::StageLaws;
 
 use super::cache::Cache;
 use super::model::{Laws, bevel_force};
@@ -34,7 +35,7 @@ pub fn laws(case: &TransmissionCase, cache: &Cache, observer: &dyn RunObserver) 
         .chain(&case.severities)
         .map(|severity| {
             let (sun, ring) = (sun.laws(severity)?, ring.laws(severity)?);
-            Ok(Laws { sun, ring, coast: coast.clone(), bevel: bevel.clone() })
+            Ok(Laws { stage: StageLaws { sun, ring, sound: coast.clone() }, bevel: bevel.clone() })
         })
         .collect()
 }

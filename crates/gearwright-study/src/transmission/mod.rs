@@ -19,12 +19,13 @@ use gearwright_results::transmission::summary::Times;
 use gearwright_results::transmission::{Findings, Resolution, Sensor};
 use planetary::elastic::ElasticBody;
 use planetary::engine::{Band, Load, NaturalMode, RunRequest, STAGES, Start, Transmission, TransmissionRun, Turning};
+use planetary::stage::mean_stiffness;
 use rayon::prelude::*;
 
 use super::{AsObserver, RunObserver};
 use cache::Cache;
 use laws::laws;
-use model::{Laws, mean_stiffness};
+use model::Laws;
 use signals::{Judge, periods};
 
 /// Natural frequencies told (Hz), at most.
@@ -190,7 +191,7 @@ fn findings(
         parts,
         housing: coordinates.map(|(omega, zeta)| (omega / std::f64::consts::TAU, *zeta)).collect(),
         mean_force: force,
-        mean_stiffness: [&healthy.sun, &healthy.ring]
+        mean_stiffness: [&healthy.stage.sun, &healthy.stage.ring]
             .map(|laws| laws.first().map(|law| mean_stiffness(law.as_ref(), force))),
         resolution,
         times: Times::default(),

@@ -2,13 +2,11 @@
 
 use std::sync::Arc;
 
-use gear_geom::MeshSite;
 use nalgebra::Vector3;
 use planetary::elastic::ElasticBody;
-use planetary::engine::{
-    Anchor, Bearing, BevelStage, BodyId, CoastFlank, Mesh, Planet, PlanetaryStage, RigidBody, TransmissionSpec,
-};
+use planetary::engine::{Anchor, Bearing, BevelStage, BodyId, Mesh, PlanetaryStage, RigidBody, TransmissionSpec};
 use planetary::mesh::MeshLaw;
+use planetary::stage::{StageLaws, StageValues, mean_stiffness};
 
 use gearwright_case::TransmissionCase;
 use gearwright_case::transmission::bevel;
@@ -19,18 +17,12 @@ const MM: f64 = 1e-3;
 const STANDING: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 /// Force, as a part of the mean, from which on the damping of a mesh is full.
 const FULL_DAMPING: f64 = 0.01;
-/// Positions at which the mean stiffness of a mesh is taken.
-const POSITIONS: usize = 16;
 
-/// Laws of the meshes of a state, of drive and of coast flanks.
+/// Laws of the meshes of a state.
 #[derive(Debug, Clone)]
 pub struct Laws {
-    /// Sun with each planet.
-    pub sun: Vec<Arc<dyn MeshLaw>>,
-    /// Ring with each planet.
-    pub ring: Vec<Arc<dyn MeshLaw>>,
-    /// Coast flanks of sun and planets, and of planets and ring: those of sound teeth.
-    pub coast: [Arc<dyn MeshLaw>; 2],
+    /// Planetary stage.
+    pub stage: StageLaws,
     /// Bevel mesh.
     pub bevel: Option<Arc<dyn MeshLaw>>,
 }
@@ -40,60 +32,23 @@ pub struct Laws {
 /// # Errors
 /// A planet that the train does not have (it has been checked).
 pub fn spec(case: &TransmissionCase, laws: &Laws, housing: Option<ElasticBody>) -> anyhow::Result<TransmissionSpec> {
-    let train = &case.train;
-    let gears = train.spec();
-    let [z_s, z_p, z_r] = [&gears.sun, &gears.planet, &gears.ring].map(|gear| f64::from(gear.teeth()));
-    let force = case.mean_force();
-    let pairs = MeshSite::ALL.map(|site| train.pair(site));
-    let damping = |law: &dyn MeshLaw| case.inputs.numerics.mesh_damping_s * mean_stiffness(law, force);
-    let dampings = [damping(laws.coast[0].as_ref()), damping(laws.coast[1].as_ref())];
-    let mesh = |site: MeshSite, planet: usize| -> anyhow::Result<Mesh> {
-        let (index, own) = match site {
-            MeshSite::SunPlanet => (0, &laws.sun),
-            MeshSite::PlanetRing => (1, &laws.ring),
-        };
-        let offset = train.mesh_offset(site, planet)?;
-        Ok(Mesh {
-            law: own.get(planet).unwrap_or(&laws.coast[index]).clone(),
-            cycle_offset: offset,
-            damping: dampings[index],
-            damping_force: (FULL_DAMPING * force).max(f64::MIN_POSITIVE),
-            coast: Some(CoastFlank {
-                law: laws.coast[index].clone(),
-                cycle_offset: pairs[index].coast_cycle(offset),
-                backlash: pairs[index].normal_backlash().max(0.0),
-            }),
-        })
-    };
+    let gears = case.train.spec();
+    let [z_s, z_r] = [&gears.sun, &gears.ring].map(|gear| f64::from(gear.teeth()));
     let own = case.inputs.bearing.iter().find(|bearing| bearing.on == Supported::Planet);
-    let [radial, axial, tilt, per] = own.map_or([0.0; 4], |b| {
+    let [radial, axial, tilt, bearing_damping] = own.map_or([0.0; 4], |b| {
         [b.radial_stiffness_n_per_m, b.axial_stiffness_n_per_m, b.tilt_stiffness_n_m_per_rad, b.damping_s]
     });
-    let bearing_stiffness = [radial, radial, axial, tilt, tilt];
-    let planets = gears.planet_angles.iter().enumerate().map(|(index, &angle)| {
-        Ok(Planet {
-            angle,
-            mass: case.bodies.planet.mass,
-            polar: case.bodies.planet.polar,
-            transverse: case.bodies.planet.transverse,
-            spin_ratio: 1.0 - z_r / z_p,
-            bearing_stiffness,
-            bearing_damping: bearing_stiffness.map(|k| per * k),
-            sun_mesh: mesh(MeshSite::SunPlanet, index)?,
-            ring_mesh: mesh(MeshSite::PlanetRing, index)?,
-        })
-    });
-    let stage = PlanetaryStage {
-        ring_teeth: gears.ring.teeth(),
-        centre_distance: gears.centre_distance,
-        height: 0.0,
-        sun_base_radius: gears.sun.base_radius(),
-        planet_base_radius: gears.planet.base_radius(),
-        ring_base_radius: gears.ring.base_radius(),
-        sun_pressure_angle: pairs[0].working_pressure_angle(),
-        ring_pressure_angle: pairs[1].working_pressure_angle(),
-        planets: planets.collect::<anyhow::Result<_>>()?,
+    let planet = &case.bodies.planet;
+    let values = StageValues {
+        output_torque: case.inputs.run.torque_n_m,
+        mesh_damping: case.inputs.numerics.mesh_damping_s,
+        planet_mass: planet.mass,
+        planet_polar: planet.polar,
+        planet_transverse: planet.transverse,
+        bearing_stiffness: [radial, radial, axial, tilt, tilt],
+        bearing_damping,
     };
+    let stage = PlanetaryStage::of_train(&case.train, &laws.stage, &values)?;
     Ok(TransmissionSpec {
         stage,
         sun: on_main_axis(&case.bodies.sun, (z_s + z_r) / z_s),
@@ -216,31 +171,4 @@ fn body_of(on: Supported) -> Option<BodyId> {
         Supported::BevelGear => Some(BodyId::BevelGear),
         Supported::Planet => None,
     }
-}
-
-/// Mean over a cycle of the stiffness of a mesh at a force (N/m).
-#[must_use]
-pub fn mean_stiffness(law: &dyn MeshLaw, force: f64) -> f64 {
-    let at = |cycle: f64| law.response(cycle, approach_at(law, cycle, force)).stiffness;
-    (0..POSITIONS).map(|k| at(k as f64 / POSITIONS as f64)).sum::<f64>() / POSITIONS as f64
-}
-
-/// Approach (m) at which a mesh carries a force, by doubling and bisection.
-#[must_use]
-pub fn approach_at(law: &dyn MeshLaw, cycle: f64, force: f64) -> f64 {
-    let carries = |approach: f64| law.response(cycle, approach).force >= force;
-    let mut high = 1e-7;
-    while !carries(high) && high < 1.0 {
-        high *= 2.0;
-    }
-    // teeth in the way of rigid involutes touch before the approach is 0
-    let mut low = -high;
-    while carries(low) && low > -1.0 {
-        low *= 2.0;
-    }
-    for _ in 0..100 {
-        let middle = 0.5 * (low + high);
-        *(if carries(middle) { &mut high } else { &mut low }) = middle;
-    }
-    high
 }

@@ -11,7 +11,7 @@ use gearwright_store::ResultsFolder;
 use gearwright_study::RunObserver;
 use gearwright_study::dynamics::{compute, film};
 
-use super::{Finished, Unusable};
+use super::{Finished, Unusable, save_tables};
 
 /// Runs a dynamics case into `target`.
 ///
@@ -24,11 +24,9 @@ pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> an
     let (speeds, blows) = (&results.speeds, &results.blows);
     observer.stage("writing results");
     let clock = Instant::now();
+    save_tables(&folder, tables::tables(results))?;
     for (row, speed) in speeds.iter().enumerate() {
-        // one speed: all in the results folder itself
-        let prefix = if speeds.len() == 1 { String::new() } else { format!("speed_{}/", row + 1) };
-        std::fs::create_dir_all(folder.file(&prefix))?;
-        write_tables(&folder, &prefix, speed)?;
+        let prefix = results.folder(row);
         if case.inputs.output.film.is_some() {
             film::write(case, &computed, row, &|name: &str| folder.file(&format!("{prefix}{name}")))?;
         }
@@ -36,21 +34,16 @@ pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> an
             draw(case, &folder, &prefix, speed)?;
         }
     }
-    if speeds.len() > 1 {
-        tables::over_speed(&folder.file("over_speed.csv"), speeds)?;
-        if case.inputs.output.plots {
-            let file = |name: &str| folder.file(name);
+    if case.inputs.output.plots {
+        let file = |name: &str| folder.file(name);
+        if speeds.len() > 1 {
             for (name, chart) in figures::over_speed(&case.inputs.title, speeds) {
                 chart.save(&file, name).map_err(|e| anyhow!("plot {name}: {e}"))?;
             }
         }
-    }
-    if !blows.is_empty() {
-        tables::impulse(&folder.file("impulse.csv"), blows)?;
-        tables::impulse_response(&folder.file("impulse_response.csv"), blows)?;
-        if case.inputs.output.plots {
+        if !blows.is_empty() {
             let chart = figures::impulse(&case.inputs.title, blows);
-            chart.save(&|name: &str| folder.file(name), "impulse_response").map_err(|e| anyhow!("plot: {e}"))?;
+            chart.save(&file, "impulse_response").map_err(|e| anyhow!("plot: {e}"))?;
         }
     }
     let times = summary::Times { output: clock.elapsed().as_secs_f64(), ..results.times };
@@ -66,23 +59,6 @@ pub fn run(case: &DynamicsCase, target: &Path, observer: &dyn RunObserver) -> an
     let folder = folder.publish()?;
     computed.finish();
     Ok(Finished { folder, screen, unusable })
-}
-
-fn write_tables(folder: &ResultsFolder, prefix: &str, speed: &Speed) -> anyhow::Result<()> {
-    let file = |name: &str| folder.file(&format!("{prefix}{name}.csv"));
-    for response in &speed.responses {
-        let suffix = response.suffix();
-        tables::response(&file(&format!("response{suffix}")), response)?;
-        tables::spectrum(&file(&format!("spectrum{suffix}")), &response.spectrum, speed.mesh_frequency)?;
-        if let Some(difference) = &response.difference {
-            tables::difference(&file(&format!("difference{suffix}")), response, difference)?;
-            let name = format!("difference_spectrum{suffix}");
-            tables::spectrum(&file(&name), &difference.spectrum, speed.mesh_frequency)?;
-        }
-    }
-    tables::tooth_forces(&file("tooth_forces"), &speed.responses)?;
-    tables::contact_loss(&file("contact_loss"), &speed.responses)?;
-    Ok(())
 }
 
 fn draw(case: &DynamicsCase, folder: &ResultsFolder, prefix: &str, speed: &Speed) -> anyhow::Result<()> {

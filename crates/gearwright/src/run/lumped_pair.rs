@@ -6,12 +6,12 @@ use std::time::Instant;
 use anyhow::anyhow;
 use gearwright_case::LumpedPairCase;
 use gearwright_plot::{Chart, lumped as figures};
-use gearwright_results::lumped::{Findings, Lumped, State, summary, tables};
+use gearwright_results::lumped::{Findings, State, summary, tables};
 use gearwright_store::ResultsFolder;
 use gearwright_study::RunObserver;
 use gearwright_study::lumped_pair::compute;
 
-use super::{Finished, Unusable};
+use super::{Finished, Unusable, save_tables};
 
 /// Runs a lumped-pair case into `target`.
 ///
@@ -19,48 +19,18 @@ use super::{Finished, Unusable};
 /// Model errors, and anything the file system says. Nothing is left at `target` then.
 pub fn run(case: &LumpedPairCase, target: &Path, observer: &dyn RunObserver) -> anyhow::Result<Finished> {
     let folder = ResultsFolder::create(target)?;
-    let Lumped { states, treatment, findings, mut times } = compute(case, observer)?;
+    let results = compute(case, observer)?;
     observer.stage("writing results");
     let clock = Instant::now();
-    write_tables(&folder, &states, &findings)?;
+    save_tables(&folder, tables::tables(&results))?;
     if case.inputs.output.plots {
-        draw(case, &folder, &states, &findings)?;
+        draw(case, &folder, &results.states, &results.findings)?;
     }
-    times.output = clock.elapsed().as_secs_f64();
-    let whole = summary::summary(case, (&states, &treatment), &findings, times)?;
+    let times = summary::Times { output: clock.elapsed().as_secs_f64(), ..results.times };
+    let whole = summary::summary(case, (&results.states, &results.treatment), &results.findings, times)?;
     std::fs::write(folder.file("summary.json"), serde_json::to_string_pretty(&whole)?)?;
     let screen = summary::screen(case, &whole);
     Ok(Finished { folder: folder.publish()?, screen, unusable: Unusable::default() })
-}
-
-fn write_tables(folder: &ResultsFolder, states: &[State], findings: &Findings) -> anyhow::Result<()> {
-    tables::curves(&folder.file("curves.csv"), states)?;
-    if !findings.time.is_empty() {
-        tables::response(&folder.file("response.csv"), &findings.time)?;
-        tables::spectrum(&folder.file("spectrum.csv"), &findings.time)?;
-        tables::contact_loss(&folder.file("contact_loss.csv"), &findings.time)?;
-        if findings.time.iter().any(|t| !t.tooth_forces.is_empty()) {
-            tables::tooth_forces(&folder.file("tooth_forces.csv"), &findings.time)?;
-        }
-    }
-    if !findings.sweeps.is_empty() {
-        tables::sweep(&folder.file("sweep.csv"), &findings.sweeps)?;
-    }
-    if !findings.branches.is_empty() {
-        tables::branch(&folder.file("branch.csv"), &findings.branches)?;
-    }
-    if !findings.impulses.is_empty() {
-        tables::impulse(&folder.file("impulse.csv"), &findings.impulses)?;
-        tables::impulse_response(&folder.file("impulse_response.csv"), &findings.impulses)?;
-    }
-    if !findings.damage.is_empty() {
-        tables::damage_response(&folder.file("damage_response.csv"), &findings.damage)?;
-        tables::damage_spectrum(&folder.file("damage_spectrum.csv"), &findings.damage)?;
-    }
-    if !findings.damage_speeds.is_empty() {
-        tables::damage_speeds(&folder.file("damage_over_speed.csv"), &findings.damage_speeds)?;
-    }
-    Ok(())
 }
 
 fn draw(case: &LumpedPairCase, folder: &ResultsFolder, states: &[State], findings: &Findings) -> anyhow::Result<()> {

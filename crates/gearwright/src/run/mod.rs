@@ -9,6 +9,8 @@ mod transmission;
 use std::path::{Path, PathBuf};
 
 use gearwright_case::Case;
+use gearwright_results::table::FilledTable;
+use gearwright_store::ResultsFolder;
 pub use gearwright_study::RunObserver;
 
 /// A finished run.
@@ -45,4 +47,13 @@ pub fn run(case: &Case, target: &Path, observer: &dyn RunObserver) -> anyhow::Re
         Case::Transmission(case) => transmission::run(case, target, observer),
         Case::Recording(case) => recording::run(case, target, observer),
     }
+}
+
+/// Writes tables into a results folder.
+fn save_tables(folder: &ResultsFolder, tables: Vec<FilledTable<'_>>) -> anyhow::Result<()> {
+    let place = folder.file("");
+    for table in tables {
+        table.save(&place)?;
+    }
+    Ok(())
 }

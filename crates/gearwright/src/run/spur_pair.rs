@@ -7,13 +7,13 @@ use anyhow::anyhow;
 use fecm::statics::{PairModel, PositionResult};
 use gearwright_case::SpurPairCase;
 use gearwright_plot::{Chart, statics as figures};
-use gearwright_results::statics::damage::{self, Effect};
+use gearwright_results::statics::damage::Effect;
 use gearwright_results::statics::{Statics, summary, tables};
 use gearwright_store::ResultsFolder;
 use gearwright_study::spur_pair::{Computed, compute};
 use gearwright_study::{RunObserver, grids};
 
-use super::{Finished, Unusable};
+use super::{Finished, Unusable, save_tables};
 
 /// Runs a spur-pair case into `target`.
 ///
@@ -28,7 +28,7 @@ pub fn run(case: &SpurPairCase, target: &Path, observer: &dyn RunObserver) -> an
     let origin = case.inputs.analysis.mesh_cycle_origin;
     let extrema = summary::results(results.positions(), &results.stresses, origin);
     let effects = results.effects(origin);
-    write_tables(case, &folder, results)?;
+    save_tables(&folder, tables::tables(results, &effects, origin))?;
     write_damage(case, &folder, &computed, &effects)?;
     if case.inputs.output.vtu {
         write_grids(case, &folder, &computed.model, results.positions(), "")?;
@@ -55,7 +55,7 @@ pub fn run(case: &SpurPairCase, target: &Path, observer: &dyn RunObserver) -> an
     Ok(Finished { folder: folder.publish()?, screen, unusable })
 }
 
-/// Tables, comparison plots and grids of the damaged pairs.
+/// Comparison plots and grids of the damaged pairs.
 fn write_damage(
     case: &SpurPairCase,
     folder: &ResultsFolder,
@@ -69,14 +69,6 @@ fn write_damage(
     let (Some((worst, worst_series)), Some(worst_model)) = (solved().next_back(), computed.damaged.last()) else {
         return Ok(());
     };
-    damage::table(&folder.file("damage.csv"), effects)?;
-    for (index, (d, series)) in solved().enumerate() {
-        let number = index + 1;
-        tables::series(&folder.file(&format!("series_damage_{number}.csv")), series, &d.stresses, origin)?;
-        if !d.stresses.tips.is_empty() {
-            d.stresses.write_fronts(&folder.file(&format!("crack_front_{number}.csv")), series, origin)?;
-        }
-    }
     if case.inputs.output.plots {
         let title = case.inputs.title.as_str();
         let named: Vec<(&str, &[PositionResult])> = std::iter::once(("healthy", healthy))
@@ -125,15 +117,6 @@ fn write_damage(
     }
     if case.inputs.output.vtu {
         write_grids(case, folder, worst_model, worst_series, "damage_")?;
-    }
-    Ok(())
-}
-
-fn write_tables(case: &SpurPairCase, folder: &ResultsFolder, results: &Statics) -> anyhow::Result<()> {
-    let origin = case.inputs.analysis.mesh_cycle_origin;
-    tables::series(&folder.file("series.csv"), results.positions(), &results.stresses, origin)?;
-    if let Some(map) = &results.map {
-        tables::force_deflection(&folder.file("force_deflection.csv"), &map.results, origin)?;
     }
     Ok(())
 }
