@@ -222,7 +222,10 @@ fn interrupted_runs_go_on_with_the_same_bits() {
     for index in 0..3 {
         let state = |of: &Value| {
             let mut state = of["speeds"][0]["states"][index].clone();
-            assert!(state["work"].as_object_mut().unwrap().remove("time_s").is_some());
+            // a solver that starts anew has no contact to start from: more pivots for the same solution
+            for counter in ["time_s", "pivots", "factorisations"] {
+                assert!(state["work"].as_object_mut().unwrap().remove(counter).is_some());
+            }
             assert!(state["work"]["external_j"].as_f64().unwrap() != 0.0);
             state
         };
