@@ -14,8 +14,8 @@ use gear_geom::{
 use nalgebra::{Point3, Unit, Vector3};
 use planetary::elastic::ElasticBody;
 use planetary::engine::{
-    Anchor, Bearing, BevelStage, BodyId, CoastFlank, Mesh, Planet, PlanetaryStage, RigidBody, RunRequest, Start,
-    TransmissionSpec, Turning,
+    Anchor, Band, Bearing, BevelStage, BodyId, CoastFlank, Mesh, Planet, PlanetaryStage, RigidBody, RunRequest, STAGES,
+    Start, TransmissionSpec, Turning,
 };
 use planetary::housing::{Casing, ReducedHousing, ReductionOptions};
 use planetary::mesh::{BevelSlices, MeshLaw, MeshTable, SlicedMesh, TableOptions, virtual_table};

@@ -13,7 +13,7 @@ use planetary::housing::{Casing, ReductionOptions};
 use planetary::mesh::{DamagedTooth, MeshTable};
 
 use super::{Measured, Saving, measured};
-use crate::train::{self, INTEGRATOR, STEPS, Scene};
+use crate::train::{self, POSITIONS, STEPS_PER_SAMPLE, Scene};
 
 /// Measures all savings: processor time, and the largest force of a mesh of the planetary stage (N).
 pub fn savings() -> anyhow::Result<Vec<Saving>> {
@@ -76,7 +76,7 @@ pub fn savings() -> anyhow::Result<Vec<Saving>> {
 /// Both tables of the stage.
 fn made(gears: &PlanetaryTrain, face: FaceModel) -> anyhow::Result<[MeshTable; 2]> {
     let make = |site| -> anyhow::Result<MeshTable> {
-        let options = train::table_options(gears, site, STEPS)?;
+        let options = train::table_options(gears, POSITIONS);
         Ok(MeshTable::from_contact(&train::model(gears, site, face)?, &options, &())?)
     };
     Ok([make(MeshSite::SunPlanet)?, make(MeshSite::PlanetRing)?])
@@ -84,7 +84,7 @@ fn made(gears: &PlanetaryTrain, face: FaceModel) -> anyhow::Result<[MeshTable; 2
 
 /// Largest force of a mesh of the stage (N).
 fn largest_force(scene: &Scene) -> anyhow::Result<Option<f64>> {
-    let run = Transmission::new(&scene.spec()?)?.run(&train::request(STEPS, 1, INTEGRATOR), &())?;
+    let run = Transmission::new(&scene.spec()?)?.run(&train::request(STEPS_PER_SAMPLE, 1), &())?;
     let stage = run.meshes.iter().take(2 * scene.train.planets());
     Ok(stage.flat_map(|mesh| mesh.force.iter().copied()).reduce(f64::max))
 }
@@ -124,7 +124,7 @@ fn cached(scene: &Scene, tables: &[MeshTable; 2]) -> anyhow::Result<Saving> {
 fn one_state_more(scene: &Scene, casing: &Casing, sound: &[MeshTable; 2]) -> anyhow::Result<Saving> {
     let gears = &scene.train;
     let site = MeshSite::PlanetRing;
-    let options = train::table_options(gears, site, STEPS)?;
+    let options = train::table_options(gears, POSITIONS);
     let crack = RootCrack::along_chord(gears.pair(site).working_side(Member::Wheel), 0.5);
     let tooth = DamagedTooth { member: Member::Wheel, pair: 10, damage: vec![Damage::Crack(crack)] };
     let model = train::model(gears, site, FaceModel::PlaneStress)?;

@@ -96,7 +96,7 @@ fn meshes(scene: &Scene) -> anyhow::Result<[Arc<dyn MeshLaw>; 2]> {
     let make = |positions: usize, tolerance: f64| -> anyhow::Result<([Arc<dyn MeshLaw>; 2], f64)> {
         let clock = Instant::now();
         let mut laws = scene.laws.clone();
-        for (k, site) in MeshSite::ALL.into_iter().enumerate() {
+        for k in 0..plane.len() {
             let options = TableOptions { tolerance, ..train::table_options(gears, positions) };
             laws[k] = Arc::new(MeshTable::from_contact(&plane[k], &options, &())?);
         }
