@@ -122,7 +122,10 @@ fn find<'a>(value: &'a Value, place: &str) -> Option<&'a Value> {
 /// Entry of a list, by number or by one of its values.
 fn entry<'a>(list: &'a Value, choice: &str) -> Option<&'a Value> {
     let Some((key, wanted)) = choice.split_once('=') else { return list.get(choice.parse::<usize>().ok()?) };
-    let is_wanted = |own: &Value| own.as_str().map_or_else(|| own.to_string() == wanted, |own| own == wanted);
+    let is_wanted = |own: &Value| match own {
+        Value::String(text) => text == wanted,
+        other => other.to_string() == wanted,
+    };
     list.as_array()?.iter().find(|entry| entry.get(key).is_some_and(is_wanted))
 }
 
