@@ -108,5 +108,11 @@ fn assume(case: &TransmissionCase, notes: &mut Notes) {
         None => "the ring stands on rigid ground",
     };
     notes.assume(format!("sun, planets, carrier and shafts are rigid bodies; {ring}"));
-    notes.assume("the input turns uniformly; all planets, and all sound teeth of a gear, are alike");
+    let alike = match (case.tooth_errors.iter().all(Vec::is_empty), case.pin_errors.is_empty()) {
+        (true, true) => "; all planets, and all sound teeth of a gear, are alike",
+        (true, false) => "; all sound teeth of a gear are alike",
+        (false, true) => "; all planets are alike",
+        (false, false) => "",
+    };
+    notes.assume(format!("the input turns uniformly{alike}"));
 }

@@ -22,6 +22,9 @@ use crate::spur_pair::resolve::{contact_options, face_model, fill_defaults, memb
 use crate::spur_pair::schema::Form;
 
 const MM: f64 = 1e-3;
+const UM: f64 = 1e-6;
+/// Position error of a pin, at most.
+const MAX_PIN_ERROR_UM: f64 = 1000.0;
 /// Steps of a run, at most.
 const MOST_STEPS: f64 = 1e8;
 
@@ -52,6 +55,10 @@ pub struct TransmissionCase {
     pub severities: Vec<Severity>,
     /// Samples of records, and steps of time.
     pub sampling: Sampling,
+    /// Errors of the teeth of sun, planets and ring, from tooth 0 on (m); empty for none.
+    pub tooth_errors: [Vec<f64>; 3],
+    /// Radial and tangential position error of each planet's pin (m); empty for none.
+    pub pin_errors: Vec<[f64; 2]>,
     /// Warnings and assumptions.
     pub notes: Notes,
 }
@@ -156,7 +163,8 @@ pub fn resolve(mut inputs: Transmission, document: &Node, folder: &Path) -> Resu
     let angles = planet_angles(&mut inputs, document, &mut faults);
     bearings(&inputs, document, &mut faults);
     let (sensors, named_sensors) = sensors(&mut inputs, document, &mut faults);
-    let Some([sun, planet, ring]) = gears else { return Err(faults) };
+    let pin_errors = pin_errors(&inputs, document, &mut faults);
+    let Some(([sun, planet, ring], tooth_errors)) = gears else { return Err(faults) };
     let train = PlanetaryTrain::new(&PlanetaryTrainSpec {
         sun,
         planet,
@@ -216,6 +224,8 @@ pub fn resolve(mut inputs: Transmission, document: &Node, folder: &Path) -> Resu
                 severities,
                 sampling,
                 inputs,
+                tooth_errors,
+                pin_errors,
                 notes: Notes::default(),
             };
             case.notes = notes(&case, document);
@@ -225,8 +235,13 @@ pub fn resolve(mut inputs: Transmission, document: &Node, folder: &Path) -> Resu
     }
 }
 
-/// Sun, planet and ring.
-fn gears(inputs: &mut Transmission, document: &Node, folder: &Path, faults: &mut Vec<Fault>) -> Option<[Gear; 3]> {
+/// Sun, planet and ring, and the errors of their teeth.
+fn gears(
+    inputs: &mut Transmission,
+    document: &Node,
+    folder: &Path,
+    faults: &mut Vec<Fault>,
+) -> Option<([Gear; 3], [Vec<f64>; 3])> {
     let mut made = Vec::new();
     for (name, form) in [("sun", Form::External), ("planet", Form::External), ("ring", Form::Internal)] {
         let gear = match name {
@@ -242,18 +257,47 @@ fn gears(inputs: &mut Transmission, document: &Node, folder: &Path, faults: &mut
         let written = spec(name, gear, &inputs.mesh, document, folder, faults);
         plane_faults(name, gear, written.as_ref(), inputs.analysis.model, document, faults);
         pitch_error_faults(name, gear, document, faults);
-        if gear.modification.pitch_errors_um.iter().any(|error| *error != 0.0) {
-            let message =
-                "pitch errors of single teeth are not computed in transmissions yet: all teeth of a gear are alike";
-            faults.push(document.fault(&format!("{name}.modification.pitch_errors_um"), message));
-        }
-        let Some(spec) = written else { continue };
-        match Gear::new(&spec) {
-            Ok(gear) => made.push(gear),
+        let Some(mut spec) = written else { continue };
+        // checked with the gear, then kept apart: the pairs of a train are those of perfect teeth
+        let checked = Gear::new(&spec);
+        let errors = std::mem::take(&mut spec.pitch_errors);
+        match checked.and_then(|_| Gear::new(&spec)) {
+            Ok(gear) => made.push((gear, by_tooth(&errors, spec.teeth()))),
             Err(errors) => faults.extend(errors.0.iter().map(|e| geometry_fault(document, Some(name), e))),
         }
     }
-    made.try_into().ok()
+    let (gears, errors): (Vec<Gear>, Vec<Vec<f64>>) = made.into_iter().unzip();
+    Some((gears.try_into().ok()?, errors.try_into().ok()?))
+}
+
+/// Errors of all teeth of a gear from a list that repeats; empty without any.
+fn by_tooth(errors: &[f64], teeth: u32) -> Vec<f64> {
+    if errors.iter().all(|error| *error == 0.0) {
+        return Vec::new();
+    }
+    errors.iter().copied().cycle().take(teeth as usize).collect()
+}
+
+/// Radial and tangential position errors of the pins (m); empty for none.
+fn pin_errors(inputs: &Transmission, document: &Node, faults: &mut Vec<Fault>) -> Vec<[f64; 2]> {
+    let train = &inputs.train;
+    let count = train.planets as usize;
+    let lists = [("pin_radial_um", &train.pin_radial_um), ("pin_tangential_um", &train.pin_tangential_um)];
+    for (key, list) in lists {
+        if !list.is_empty() && list.len() != count {
+            let message = format!("has {} values for {count} planets", list.len());
+            faults.push(document.fault(&format!("train.{key}"), message));
+        }
+        if let Some(error) = list.iter().find(|error| !(error.abs() <= MAX_PIN_ERROR_UM)) {
+            let message = format!("must be -{MAX_PIN_ERROR_UM} to {MAX_PIN_ERROR_UM} um; {error} is not");
+            faults.push(document.fault(&format!("train.{key}"), message));
+        }
+    }
+    if lists.iter().all(|(_, list)| list.iter().all(|error| *error == 0.0)) {
+        return Vec::new();
+    }
+    let at = |list: &[f64], planet: usize| list.get(planet).copied().unwrap_or_default() * UM;
+    (0..count).map(|planet| [at(&train.pin_radial_um, planet), at(&train.pin_tangential_um, planet)]).collect()
 }
 
 fn pair_options(inputs: &Transmission, document: &Node, faults: &mut Vec<Fault>) -> [PairModelOptions; 2] {

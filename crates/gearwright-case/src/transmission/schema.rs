@@ -104,6 +104,12 @@ pub struct Train {
     /// whole multiples of 360 degrees over the teeth of sun and ring together, else the gears cannot be assembled.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub planet_angles_deg: Vec<f64>,
+    /// Position errors of the planets' pins, outward from the main axis (um), one for each planet. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pin_radial_um: Vec<f64>,
+    /// Position errors of the planets' pins along the circumference, counter-clockwise (um), one for each planet. A pin that stands ahead carries less.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pin_tangential_um: Vec<f64>,
 }
 
 /// Mass and inertia of all rigid bodies.

@@ -7,7 +7,8 @@ use anyhow::{Context, bail};
 use fecm::statics::PairModel;
 use gear_geom::{Damage, Member, MeshSite, TrainTooth};
 use planetary::mesh::{
-    BevelSlices, DamageWindow, DamagedTooth, MeshLaw, MeshTable, MeshTableData, SlicedMesh, TableOptions, virtual_table,
+    BevelSlices, DamageWindow, DamagedTooth, MeshLaw, MeshTable, MeshTableData, MeshWithErrors, OffsetMesh, SlicedMesh,
+    TableOptions, ToothErrors, ToothPairCurves, pin_offset, virtual_table,
 };
 use planetary::stage::StageLaws;
 
@@ -97,6 +98,8 @@ struct Site<'a> {
     model: OnceLock<PairModel>,
     /// Table of sound teeth.
     sound: Arc<MeshTable>,
+    /// Curves of single tooth pairs, where teeth have errors.
+    pairs: Option<Arc<ToothPairCurves>>,
 }
 
 impl<'a> Site<'a> {
@@ -122,7 +125,71 @@ impl<'a> Site<'a> {
             let made = MeshTable::from_contact(made(&model, case, site)?, &options, &AsObserver(observer));
             made.with_context(|| format!("the contact of the {name} cannot be solved"))
         })?;
-        Ok(Self { case, site, cache, observer, options, model, sound: Arc::new(sound) })
+        let mut own = Self { case, site, cache, observer, options, model, sound: Arc::new(sound), pairs: None };
+        if own.tooth_errors().iter().any(|errors| !errors.is_empty()) {
+            own.pairs = Some(Arc::new(own.pair_curves()?));
+        }
+        Ok(own)
+    }
+
+    /// Errors of the teeth of the pinion and of the wheel of this mesh (m).
+    fn tooth_errors(&self) -> [&[f64]; 2] {
+        let [sun, planet, ring] = &self.case.tooth_errors;
+        match self.site {
+            MeshSite::SunPlanet => [sun, planet],
+            MeshSite::PlanetRing => [planet, ring],
+        }
+    }
+
+    /// Curves of single tooth pairs at the positions of the table.
+    fn pair_curves(&self) -> anyhow::Result<ToothPairCurves> {
+        stopped(self.observer)?;
+        let (options, name) = (self.options, name(self.site));
+        let [pinion, wheel] = self.tooth_errors().map(<[f64]>::to_vec);
+        let spread = ToothErrors { pinion, wheel }.spread();
+        let pair = &self.case.pairs[usize::from(self.site == MeshSite::PlanetRing)];
+        let key = format!("{:?}", (self.case.train.pair(self.site), pair, options, spread));
+        self.cache.get("pairs", &key, || {
+            self.observer.stage(&format!("contact of single tooth pairs of the {name}"));
+            let model = made(&self.model, self.case, self.site)?;
+            let found = ToothPairCurves::from_contact(&self.sound, model, &options, spread, &AsObserver(self.observer));
+            found.with_context(|| format!("the contact of single tooth pairs of the {name} cannot be solved"))
+        })
+    }
+
+    /// The law of a planet's mesh with the errors of its teeth and of its pin.
+    fn with_errors(&self, table: Arc<MeshTable>, planet: usize) -> anyhow::Result<Arc<dyn MeshLaw>> {
+        let law: Arc<dyn MeshLaw> = match &self.pairs {
+            None => table,
+            Some(curves) => Arc::new(MeshWithErrors::new(table, curves.clone(), self.errors_of(planet)?)?),
+        };
+        let Some(&error) = self.case.pin_errors.get(planet) else { return Ok(law) };
+        let offset = pin_offset(self.site, self.case.train.pair(self.site).working_pressure_angle(), error);
+        Ok(Arc::new(OffsetMesh::new(law, offset)?))
+    }
+
+    /// Errors of the teeth of a planet's mesh, by pair.
+    fn errors_of(&self, planet: usize) -> anyhow::Result<ToothErrors> {
+        let of = |errors: &[f64], tooth: fn(usize, u32) -> TrainTooth| -> anyhow::Result<Vec<f64>> {
+            let mut by_pair = errors.to_vec();
+            for (number, error) in errors.iter().enumerate() {
+                let found = self.case.train.pairs_of_tooth(self.site, planet, tooth(planet, number as u32))?;
+                let (pair, _) = found.context("a tooth is in no pair of its own mesh")?;
+                by_pair[pair as usize] = *error;
+            }
+            Ok(by_pair)
+        };
+        let [pinion, wheel] = self.tooth_errors();
+        Ok(match self.site {
+            MeshSite::SunPlanet => ToothErrors {
+                pinion: of(pinion, |_, number| TrainTooth::Sun(number))?,
+                wheel: of(wheel, TrainTooth::Planet)?,
+            },
+            MeshSite::PlanetRing => ToothErrors {
+                pinion: of(pinion, TrainTooth::Planet)?,
+                wheel: of(wheel, |_, number| TrainTooth::Ring(number))?,
+            },
+        })
     }
 
     /// Table with one damaged tooth, in pair 0 of the mesh.
@@ -155,13 +222,13 @@ impl<'a> Site<'a> {
                     let table = self.damaged(member, &damage, &severity.label)?;
                     windows.extend(table.data().windows.iter().cloned().map(|window| DamageWindow { pair, ..window }));
                 }
-                if windows.is_empty() {
-                    return Ok(self.sound.clone() as Arc<dyn MeshLaw>);
-                }
-                let data = MeshTableData { windows, ..self.sound.data().clone() };
-                let table =
-                    MeshTable::new(data).with_context(|| format!("{}, planet {}", severity.label, planet + 1))?;
-                Ok(Arc::new(table) as Arc<dyn MeshLaw>)
+                let table = if windows.is_empty() {
+                    self.sound.clone()
+                } else {
+                    let table = MeshTable::new(MeshTableData { windows, ..self.sound.data().clone() });
+                    Arc::new(table.with_context(|| format!("{}, planet {}", severity.label, planet + 1))?)
+                };
+                self.with_errors(table, planet)
             })
             .collect()
     }

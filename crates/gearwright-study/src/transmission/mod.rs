@@ -168,8 +168,13 @@ fn findings(
     let turn = ring as usize * samples;
     // with everything on the sun's shaft alike the ring sees a planet pass repeat, otherwise all must return
     let on_ring = |tooth: &TrainTooth| matches!(tooth, TrainTooth::Ring(_));
-    let alike = case.bevel.is_none() && case.severities.iter().flat_map(|s| &s.damage).all(|(t, _)| on_ring(t));
+    let [sun_errors, planet_errors, _] = &case.tooth_errors;
+    let alike = case.bevel.is_none()
+        && sun_errors.is_empty()
+        && case.pin_errors.is_empty()
+        && case.severities.iter().flat_map(|s| &s.damage).all(|(t, _)| on_ring(t));
     let repeats = match periods.first() {
+        _ if !planet_errors.is_empty() => turn.saturating_mul(case.train.hunting_period() as usize),
         Some(period) if alike => period.samples,
         _ => turn * case.train.sun_ring_period() as usize,
     };

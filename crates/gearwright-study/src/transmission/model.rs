@@ -2,10 +2,11 @@
 
 use std::sync::Arc;
 
+use gear_geom::MeshSite;
 use nalgebra::Vector3;
 use planetary::elastic::ElasticBody;
 use planetary::engine::{Anchor, Bearing, BevelStage, BodyId, Mesh, PlanetaryStage, RigidBody, TransmissionSpec};
-use planetary::mesh::MeshLaw;
+use planetary::mesh::{MeshLaw, pin_offset};
 use planetary::stage::{StageLaws, StageValues, mean_stiffness};
 
 use gearwright_case::TransmissionCase;
@@ -48,7 +49,19 @@ pub fn spec(case: &TransmissionCase, laws: &Laws, housing: Option<ElasticBody>) 
         bearing_stiffness: [radial, radial, axial, tilt, tilt],
         bearing_damping,
     };
-    let stage = PlanetaryStage::of_train(&case.train, &laws.stage, &values)?;
+    let mut stage = PlanetaryStage::of_train(&case.train, &laws.stage, &values)?;
+    let angles = [stage.sun_pressure_angle, stage.ring_pressure_angle];
+    for (planet, &[radial, tangential]) in stage.planets.iter_mut().zip(&case.pin_errors) {
+        for (mesh, site, angle) in [
+            (&mut planet.sun_mesh, MeshSite::SunPlanet, angles[0]),
+            (&mut planet.ring_mesh, MeshSite::PlanetRing, angles[1]),
+        ] {
+            if let Some(coast) = &mut mesh.coast {
+                // coast flanks push the planet backward
+                coast.backlash = (coast.backlash + pin_offset(site, angle, [radial, -tangential])).max(0.0);
+            }
+        }
+    }
     Ok(TransmissionSpec {
         stage,
         sun: on_main_axis(&case.bodies.sun, (z_s + z_r) / z_s),

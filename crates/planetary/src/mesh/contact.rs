@@ -54,7 +54,7 @@ impl TableOptions {
         }
     }
 
-    fn mesh_cycle(&self, position: i64) -> f64 {
+    pub(super) fn mesh_cycle(&self, position: i64) -> f64 {
         self.origin + position as f64 / self.positions_per_cycle as f64
     }
 }
@@ -159,6 +159,33 @@ pub fn force_curves(
     options: &TableOptions,
     observer: &dyn Observer,
 ) -> Result<Vec<ForceCurve>, MeshError> {
+    each_curve(model, positions, options, observer)?.into_iter().collect()
+}
+
+/// Force curves at positions; `None` where loads have no solution.
+///
+/// # Errors
+/// Options out of range, [`MeshError::Cancelled`].
+pub(super) fn possible_curves(
+    model: &PairModel,
+    positions: std::ops::Range<i64>,
+    options: &TableOptions,
+    observer: &dyn Observer,
+) -> Result<Vec<Option<ForceCurve>>, MeshError> {
+    let curves = each_curve(model, positions, options, observer)?.into_iter().map(|curve| match curve {
+        Ok(curve) => Ok(Some(curve)),
+        Err(MeshError::TooFewLoads { .. } | MeshError::Knot { .. }) => Ok(None),
+        Err(error) => Err(error),
+    });
+    curves.collect()
+}
+
+fn each_curve(
+    model: &PairModel,
+    positions: std::ops::Range<i64>,
+    options: &TableOptions,
+    observer: &dyn Observer,
+) -> Result<Vec<Result<ForceCurve, MeshError>>, MeshError> {
     options.validate()?;
     let mesh_cycles: Vec<f64> = positions.map(|position| options.mesh_cycle(position)).collect();
     let forces = (0..=options.octaves).rev().map(|octave| options.highest_force * 0.5_f64.powi(octave as i32));
@@ -168,14 +195,11 @@ pub fn force_curves(
     if observer.is_cancelled() || series.results.iter().any(|results| results.len() != mesh_cycles.len()) {
         return Err(MeshError::Cancelled);
     }
-    let curves: Vec<Result<ForceCurve, MeshError>> = (0..mesh_cycles.len())
-        .into_par_iter()
-        .map(|index| {
-            let results: Vec<&PositionResult> = series.results.iter().map(|results| &results[index]).collect();
-            curve(model, &results, options, observer)
-        })
-        .collect();
-    curves.into_iter().collect()
+    let curves = (0..mesh_cycles.len()).into_par_iter().map(|index| {
+        let results: Vec<&PositionResult> = series.results.iter().map(|results| &results[index]).collect();
+        curve(model, &results, options, observer)
+    });
+    Ok(curves.collect())
 }
 
 fn request(mesh_cycles: Vec<f64>, torques: Vec<f64>) -> StaticsRequest {

@@ -126,6 +126,23 @@ impl ForceCurve {
         MeshResponse { force, stiffness }
     }
 
+    /// Approach (m) at which the curve has a force (N), by bisection; that of first touch for none.
+    #[must_use]
+    pub fn approach_of(&self, force: f64) -> f64 {
+        let ForceCurveData { touch, knots } = &self.data;
+        let above = knots.partition_point(|knot| knot.force < force);
+        let mut low = above.checked_sub(1).map_or(*touch, |below| knots[below].approach);
+        let Some(mut high) = knots.get(above).map(|knot| knot.approach) else {
+            let (last, slope) = (&knots[knots.len() - 1], self.slopes[knots.len() - 1]);
+            return last.approach + (force - last.force) / slope;
+        };
+        while low < 0.5 * (low + high) && 0.5 * (low + high) < high {
+            let middle = 0.5 * (low + high);
+            *(if self.response(middle).force < force { &mut low } else { &mut high }) = middle;
+        }
+        high
+    }
+
     /// The curve with deflections larger by a fraction, above -1, and pairs counted on.
     ///
     /// # Errors

@@ -14,6 +14,7 @@
 //! |---|---|
 //! | [`MeshTable`] | contact mechanics, sound or with damaged teeth ([`MeshTable::from_contact`], [`MeshTable::with_damage`]) |
 //! | [`SlicedMesh`] | inclined teeth as slices of straight ones: spiral bevel gears ([`SlicedMesh::bevel`], [`virtual_table`]) |
+//! | [`MeshWithErrors`] | a table, with errors of single teeth |
 //! | [`LinearMesh`] | a stiffness and an error over the mesh cycle |
 
 mod contact;
@@ -23,6 +24,7 @@ mod law;
 mod linear;
 mod sliced;
 mod table;
+mod tooth_errors;
 
 pub use contact::{DamagedTooth, TableOptions, force_curves};
 pub use curve::{ForceCurve, ForceCurveData, ForceKnot};
@@ -31,3 +33,4 @@ pub use law::{MeshLaw, MeshResponse};
 pub use linear::{LinearMesh, Periodic};
 pub use sliced::{BevelSlices, Slice, SlicedMesh, virtual_table};
 pub use table::{DamageWindow, MeshTable, MeshTableData};
+pub use tooth_errors::{MeshWithErrors, OffsetMesh, ToothErrors, ToothPairCurves, pin_offset};

@@ -141,7 +141,7 @@ impl MeshTable {
 
     /// The four positions about a mesh cycle, with their weights: cubic convolution (R. G. Keys, *IEEE Trans. ASSP* 29, 1981, 1153-1160). Weights of the two positions on either side
     /// do not add up to less than 0; where only the outermost touches, force is 0.
-    fn beside(&self, mesh_cycle: f64) -> [(i64, f64); 4] {
+    pub(super) fn beside(&self, mesh_cycle: f64) -> [(i64, f64); 4] {
         let most = MOST_POSITIONS as f64;
         let place = ((mesh_cycle - self.data.origin) * self.data.sound.len() as f64).clamp(-most, most);
         let nearest = place.round();
