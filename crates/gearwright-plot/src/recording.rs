@@ -4,7 +4,7 @@ mod detection;
 mod polar;
 
 use gearwright_case::RecordingCase;
-use gearwright_results::recording::{Channel, Detail, Outcome, Row, value};
+use gearwright_results::recording::{Channel, Detail, Entry, Outcome, Row, value};
 
 use super::{COLOURS, Chart, Line, Mark, MarkedChart, Pattern, PolarChart, thinned};
 
@@ -14,6 +14,8 @@ const HARMONICS: usize = 4;
 const CHANNELS: usize = 16;
 /// Lowest amplitude drawn at most (dB below the largest).
 const FLOOR: f64 = -120.0;
+/// Foot of an order spectrum at least that low (dB below the largest).
+const FLAT: f64 = -60.0;
 /// Indicators that get a trend figure.
 const TRENDS: [(&str, &str); 9] = [
     ("rms", "raw"),
@@ -74,8 +76,24 @@ fn charts(case: &RecordingCase, outcome: &Outcome) -> Vec<(String, MarkedChart)>
             Some((format!("trend_{indicator}_{signal}"), trend_of(case, outcome, &names, indicator, signal)?))
         });
         charts.extend(charted);
+        charts.extend(health_index(case, outcome).map(|chart| ("trend_health_index".to_owned(), chart)));
     }
     charts
+}
+
+/// The health index over the recordings, with its limit.
+fn health_index(case: &RecordingCase, outcome: &Outcome) -> Option<MarkedChart> {
+    let value = |entry: &Entry| Some(outcome.limits.health_index(entry.measured.as_ref().ok()?)?.value);
+    let points = outcome.entries.iter().enumerate();
+    let points: Vec<_> = points.filter_map(|(k, entry)| Some(((k + 1) as f64, value(entry)?))).collect();
+    if points.is_empty() {
+        return None;
+    }
+    let title = heading(case, "health index: largest deviation of all indicators, 1 at the limits");
+    let mut chart = chart(title, "Recording", "Health index".into(), vec![line("", 0, points)]);
+    chart.from_zero = true;
+    let marks = vec![Mark { at: 1.0, upright: false, label: "limit".into(), colour: COLOURS[2], dotted: false }];
+    Some(MarkedChart { chart, marks, bands: Vec::new(), x_range: None, y_up_to: Some(1.0) })
 }
 
 fn heading(case: &RecordingCase, rest: &str) -> String {
@@ -134,7 +152,8 @@ fn order_spectrum(case: &RecordingCase, channel: &Channel, detail: &Detail) -> M
         .map(|(k, a)| (k, (20.0 * (a / largest).log10()).max(FLOOR)))
         .collect();
     let lowest = levels.iter().map(|(_, level)| *level).fold(0.0, f64::min);
-    let floor = ((lowest / 10.0).floor() * 10.0).max(FLOOR);
+    // Room below the lowest line, so that its stick is seen.
+    let floor = ((lowest / 10.0).floor() * 10.0 - 10.0).clamp(FLOOR, FLAT);
     let sticks = levels.iter().flat_map(|&(k, level)| [(order(k), floor), (order(k), level), (order(k), floor)]);
     let y_label = match case.inputs.signal.unit.as_str() {
         "" => format!("Amplitude (dB re {largest:.4})"),
@@ -176,11 +195,12 @@ fn trend_of(
         let points = outcome.entries.iter().enumerate();
         let points = points.filter_map(|(k, entry)| Some(((k + 1) as f64, value(entry, name, &quantity)?)));
         lines.push(line(name, index, points.collect()));
-        if let Some(limit) = row(name).and_then(|row| outcome.limits.of(name, row)) {
-            let same = |mark: &Mark| mark.at.total_cmp(&limit.threshold).is_eq();
+        let limit = row(name).and_then(|row| outcome.limits.of(name, row)).map(|bound| bound.limit);
+        for at in limit.into_iter().flat_map(|limit| [limit.lower, limit.upper]).flatten() {
+            let same = |mark: &Mark| mark.at.total_cmp(&at).is_eq();
             if !marks.iter().any(same) {
                 let (label, colour) = (String::new(), COLOURS[index % COLOURS.len()]);
-                marks.push(Mark { at: limit.threshold, upright: false, label, colour, dotted: false });
+                marks.push(Mark { at, upright: false, label, colour, dotted: false });
             }
         }
     }

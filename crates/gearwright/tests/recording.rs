@@ -154,7 +154,7 @@ fn analytic_table_is_the_librarys() {
     let (shaft, _) = Shaft::from_channel(&tacho, RATE, 1.0, &PulseOptions::default()).unwrap();
     let samples = samples_per_period(RATE, &shaft, 1.0).unwrap();
     let average = average(&x, RATE, &shaft, &TsaOptions::per_turn(samples)).unwrap();
-    let analyzer = GearAnalyzer::new(samples, &RemovalRule::sidebands(27, 1)).unwrap();
+    let analyzer = GearAnalyzer::new(samples, &RemovalRule::shaft_and_mesh(27)).unwrap();
     let rows = table(&scratch.path().join("out/rec/indicators.csv"));
     let analysis = analyzer.analyze(&average.samples).unwrap();
     assert!(analysis.table.len() > 20);
@@ -184,7 +184,7 @@ fn healthy_noise_raises_no_alarm_and_a_case_file_says_what_flags_say() {
     scratch.record("rec.csv", 20_480, Holds { noise: 0.2, ..Holds::default() }, 3);
     let flags = ["hums", "--signal", "rec.csv", "--rate-hz", "5120", "--teeth", "27", "--tach", "tacho", "--no-plots"];
     let screen = succeed(scratch.path(), &[&flags[..], &["--out", "a", "--threads", "1"]].concat());
-    assert!(!screen.contains("above threshold"), "{screen}");
+    assert!(!screen.contains("outside limits") && screen.contains("  ok (4 of "), "{screen}");
     let case = "kind = \"recording\"\noutput.plots = false\ngear.teeth = 27\n\n[signal]\nfile = \"rec.csv\"\n\
                 rate_hz = 5120.0\n\n[tachometer]\nchannel = \"tacho\"\n";
     scratch.write("case.toml", case);
@@ -272,8 +272,8 @@ fn trend_raises_alarms_after_the_healthy_ones_and_tells_what_it_cannot_use() {
     }
     scratch.write("runs/day05b.csv", "case,tacho\n1.0,0\n2.0,1\n");
     scratch.write("runs/notes.pdf", "not a recording");
-    let arguments =
-        ["hums", "--signal", "runs", "--rate-hz", "5120", "--teeth", "27", "--tach", "tacho", "--healthy-first", "6"];
+    let flags = ["hums", "--signal", "runs", "--rate-hz", "5120", "--teeth", "27", "--tach", "tacho"];
+    let arguments = [&flags[..], &["--healthy-first", "6", "--sigmas", "3"]].concat();
     let output = gearwright(scratch.path(), &arguments);
     let (screen, warning) = (text(&output.stdout), text(&output.stderr));
     assert!(output.status.code() == Some(3) && warning.contains("1 of 13 recordings"), "{warning}");
@@ -324,7 +324,8 @@ fn trend_raises_alarms_after_the_healthy_ones_and_tells_what_it_cannot_use() {
     succeed(scratch.path(), &judge);
     let rows = table(&scratch.path().join("out/day11/indicators.csv"));
     let fm4 = row(&rows, "fm4", "difference");
-    assert_eq!(fm4["false_alarm_rate"].parse::<f64>().unwrap(), 0.5, "half of the healthy are above their median");
+    let held_out: f64 = fm4["false_alarm_rate"].parse().unwrap();
+    assert!(held_out >= 0.5, "the middle half of five others leaves out half of the sixth at least: {held_out}");
     assert_eq!(fm4["verdict"], "alarm");
 }
 
@@ -478,7 +479,10 @@ fn gaps_cost_periods_not_the_recording() {
         succeed(scratch.path(), &["hums", "--signal", "rec.csv", "--rate-hz", "5120", "--teeth", "27", "--tach", "2"]);
     assert!(screen.contains("903 samples missing"), "{screen}");
     let rows = table(&scratch.path().join("out/rec/indicators.csv"));
-    assert!(row(&rows, "rms", "raw")["reason"].contains("5000"));
+    // Raw indicators are those of the samples that are there.
+    let finite: Vec<f64> = x.iter().copied().filter(|v| v.is_finite()).collect();
+    let rms: f64 = row(&rows, "rms", "raw")["value"].parse().unwrap();
+    assert!((rms / hums::indicator::basic::rms(&finite).unwrap() - 1.0).abs() < 1e-11);
     assert!(!row(&rows, "rms", "tsa")["value"].is_empty());
     let svg = std::fs::read_to_string(scratch.path().join("out/rec/signal.svg")).unwrap();
     assert!(!svg.contains("NaN"));
@@ -642,10 +646,258 @@ fn a_time_column_gives_the_rate_and_is_not_judged() {
     let rows = table(&scratch.path().join("out/rec/indicators.csv"));
     let channels: std::collections::BTreeSet<&str> = rows.iter().map(|r| r["channel"].as_str()).collect();
     assert_eq!(channels.into_iter().collect::<Vec<_>>(), ["x", "x (3)"], "equal names are told apart");
-    let holed: Vec<f64> = time.iter().map(|t| if *t > 1.0 { t + 0.5 } else { *t }).collect();
-    scratch.write("holed.csv", &csv_text("t,x,tacho", &[&holed, &x, &tacho]));
-    let output = gearwright(scratch.path(), &["hums", "--signal", "holed.csv", "--teeth", "27", "--tach", "tacho"]);
+}
+
+/// Flags of a recording with a tachometer and nothing else.
+const PLAIN: [&str; 7] = ["hums", "--teeth", "27", "--tach", "tacho", "--no-plots", "--signal"];
+
+/// Channel verdicts of a run: verdict and why it is not judged.
+fn verdicts(folder: &Path) -> BTreeMap<String, (String, String)> {
+    let summary: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.join("summary.json")).unwrap()).unwrap();
+    let of = |channel: &serde_json::Value, key: &str| channel[key].as_str().unwrap().to_owned();
+    let channels = summary["channels"].as_object().unwrap().iter();
+    channels.map(|(name, c)| (name.clone(), (of(c, "verdict"), of(c, "not_judged_because")))).collect()
+}
+
+/// Nothing is "ok" that was not judged: dead, empty and clipped channels say so on the screen, in the tables and in the summary.
+#[test]
+fn a_channel_that_cannot_be_judged_is_not_ok() {
+    let scratch = Scratch::new();
+    let [x, tacho] = recording(20_480, Holds { noise: 0.2, ..Holds::default() }, 61);
+    let dead = vec![0.0; x.len()];
+    let empty = vec![f64::NAN; x.len()];
+    let clipped: Vec<f64> = x.iter().map(|v| v.clamp(-0.9, 0.9)).collect();
+    let mut loose = x.clone();
+    loose[3000..5000].fill(0.01);
+    scratch.write(
+        "rec.csv",
+        &csv_text("good,dead,empty,clipped,loose,tacho", &[&x, &dead, &empty, &clipped, &loose, &tacho]),
+    );
+    let screen = succeed(scratch.path(), &[&PLAIN[..], &["rec.csv", "--rate-hz", "5120"]].concat());
+    let out = scratch.path().join("out/rec");
+    let found = verdicts(&out);
+    assert_eq!(found["good"], ("ok".to_owned(), String::new()));
+    for (name, flaw) in [("dead", "dead"), ("empty", "no-data"), ("clipped", "clipped"), ("loose", "dropout")] {
+        let (verdict, why) = &found[name];
+        assert!(verdict == "not judged" && why.starts_with(flaw), "{name}: {verdict}, {why}");
+        let line = screen.lines().find(|line| line.starts_with(name)).unwrap();
+        assert!(line.contains("not judged") && line.contains(flaw), "{line}");
+    }
+    let rows = table(&out.join("indicators.csv"));
+    for row in rows.iter().filter(|row| row["channel"] == "clipped") {
+        assert_eq!(row["verdict"], "not judged", "{row:?}");
+        assert!(row["not_judged_because"].starts_with("clipped"), "{row:?}");
+    }
+    let quality = table(&out.join("quality.csv"));
+    let flaws: Vec<(&str, &str)> = quality.iter().map(|r| (&r["channel"][..], &r["flaw"][..])).collect();
+    assert_eq!(flaws, [("dead", "dead"), ("empty", "no-data"), ("clipped", "clipped"), ("loose", "dropout")]);
+    // The user may accept a flaw.
+    succeed(scratch.path(), &[&PLAIN[..], &["rec.csv", "--rate-hz", "5120", "--accept", "clipped,dropout"]].concat());
+    let found = verdicts(&out);
+    assert!(found["clipped"].0 != "not judged" && found["loose"].0 != "not judged" && found["dead"].0 == "not judged");
+    let output =
+        gearwright(scratch.path(), &[&PLAIN[..], &["rec.csv", "--rate-hz", "5120", "--accept", "clip"]].concat());
     let message = text(&output.stderr);
-    assert!(!output.status.success(), "a hole in the time column is no uniform rate");
-    assert!(message.contains("holed.csv") && message.contains("\"t\"") && message.contains("--rate-hz"), "{message}");
+    assert!(!output.status.success() && message.contains("--accept") && message.contains("clipped"), "{message}");
+}
+
+/// A healthy set whose channels carry other names has no limits for these: nine times the RMS is not "ok".
+#[test]
+fn limits_of_other_channels_judge_nothing() {
+    let scratch = Scratch::new();
+    for k in 0..4_u64 {
+        let [x, tacho] = recording(12_000, Holds { noise: 0.1, ..Holds::default() }, 70 + k);
+        scratch.write(&format!("healthy/{k}.csv"), &csv_text("case x,tacho", &[&x, &tacho]));
+    }
+    let [x, tacho] = recording(12_000, Holds { noise: 0.1, ..Holds::default() }, 80);
+    let loud: Vec<f64> = x.iter().map(|v| 9.0 * v).collect();
+    scratch.write("loud.csv", &csv_text("case x,tacho", &[&loud, &tacho]));
+    scratch.write("other.csv", &csv_text("case y,tacho", &[&loud, &tacho]));
+    let flags = ["--rate-hz", "5120", "--healthy", "healthy"];
+    let screen = succeed(scratch.path(), &[&PLAIN[..], &["other.csv"], &flags].concat());
+    let (verdict, why) = &verdicts(&scratch.path().join("out/other"))["case y"];
+    assert!(verdict == "not judged" && why.contains("\"case x\"") && why.contains("\"case y\""), "{verdict} {why}");
+    assert!(screen.contains("not judged: the healthy set has no usable channel"), "{screen}");
+    succeed(scratch.path(), &[&PLAIN[..], &["loud.csv"], &flags].concat());
+    assert_eq!(verdicts(&scratch.path().join("out/loud"))["case x"].0, "alarm");
+    let rows = table(&scratch.path().join("out/loud/indicators.csv"));
+    assert_eq!(row(&rows, "rms", "raw")["verdict"], "alarm");
+    // Limits have two sides: a ninth of the RMS is no better.
+    let quiet: Vec<f64> = x.iter().map(|v| v / 9.0).collect();
+    scratch.write("quiet.csv", &csv_text("case x,tacho", &[&quiet, &tacho]));
+    succeed(scratch.path(), &[&PLAIN[..], &["quiet.csv"], &flags].concat());
+    let rows = table(&scratch.path().join("out/quiet/indicators.csv"));
+    assert_eq!(row(&rows, "rms", "raw")["verdict"], "alarm");
+}
+
+/// The whole time column counts: rows missing behind its head leave the average what it is, and are reported.
+#[test]
+fn rows_missing_from_a_time_column_are_gaps() {
+    let scratch = Scratch::new();
+    let [x, tacho] = recording(90_000, Holds { noise: 0.05, ..Holds::default() }, 91);
+    let time: Vec<f64> = (0..x.len()).map(|i| i as f64 / RATE).collect();
+    let without = |columns: [&[f64]; 3]| -> String {
+        let kept: Vec<Vec<f64>> = columns.iter().map(|c| [&c[..70_000], &c[73_333..]].concat()).collect();
+        csv_text("t,x,tacho", &[&kept[0], &kept[1], &kept[2]])
+    };
+    scratch.write("whole.csv", &csv_text("t,x,tacho", &[&time, &x, &tacho]));
+    scratch.write("holed.csv", &without([&time, &x, &tacho]));
+    succeed(scratch.path(), &[&PLAIN[..], &["whole.csv"]].concat());
+    let screen = succeed(scratch.path(), &[&PLAIN[..], &["holed.csv"]].concat());
+    assert!(screen.contains("3333 rows are missing"), "{screen}");
+    let amplitudes = ["whole", "holed"]
+        .map(|name| amplitude(&table(&scratch.path().join(format!("out/{name}/averages.csv"))), "x tsa", 27.0));
+    assert!((amplitudes[1] / amplitudes[0] - 1.0).abs() < 1e-3, "{amplitudes:?}");
+    let quality = table(&scratch.path().join("out/holed/quality.csv"));
+    assert!(quality.iter().any(|r| r["flaw"] == "time-column" && r["channel"].is_empty()), "{quality:?}");
+
+    // From the middle on only every second row: half of the samples are missing, nothing is judged.
+    let every_second: Vec<usize> = (0..45_000).chain((45_000..90_000).step_by(2)).collect();
+    let pick = |column: &[f64]| every_second.iter().map(|i| column[*i]).collect::<Vec<f64>>();
+    scratch.write("doubled.csv", &csv_text("t,x,tacho", &[&pick(&time), &pick(&x), &pick(&tacho)]));
+    succeed(scratch.path(), &[&PLAIN[..], &["doubled.csv"]].concat());
+    assert_eq!(verdicts(&scratch.path().join("out/doubled"))["x"].0, "not judged");
+    // A step back is an error with the column's name.
+    let back: Vec<f64> = time.iter().enumerate().map(|(i, t)| if i == 80_000 { t - 1.0 } else { *t }).collect();
+    scratch.write("back.csv", &csv_text("t,x,tacho", &[&back, &x, &tacho]));
+    let output = gearwright(scratch.path(), &[&PLAIN[..], &["back.csv"]].concat());
+    let message = text(&output.stderr);
+    assert!(!output.status.success() && message.contains("\"t\"") && message.contains("go back"), "{message}");
+}
+
+/// A rate that contradicts the file keeps everything from being judged.
+#[test]
+fn a_rate_that_contradicts_the_file_is_a_conflict() {
+    let scratch = Scratch::new();
+    let [x, tacho] = recording(20_480, Holds { noise: 0.2, ..Holds::default() }, 95);
+    let time: Vec<f64> = (0..x.len()).map(|i| i as f64 / RATE).collect();
+    scratch.write("rec.csv", &csv_text("t,x,tacho", &[&time, &x, &tacho]));
+    let screen = succeed(scratch.path(), &[&PLAIN[..], &["rec.csv", "--rate-hz", "10240"]].concat());
+    assert!(screen.contains("rate-conflict") && screen.contains("5120"), "{screen}");
+    assert_eq!(verdicts(&scratch.path().join("out/rec"))["x"].0, "not judged");
+    succeed(scratch.path(), &[&PLAIN[..], &["rec.csv", "--rate-hz", "5121"]].concat());
+    assert_eq!(verdicts(&scratch.path().join("out/rec"))["x"].0, "ok", "two parts in ten thousand are no conflict");
+}
+
+/// Three seconds of standstill are no thirty turns.
+#[test]
+fn a_standstill_is_left_out_and_reported() {
+    let scratch = Scratch::new();
+    let [x, tacho] = recording(61_440, Holds { noise: 0.05, ..Holds::default() }, 97);
+    let rest = 15_360;
+    let mut noise = Noise(5);
+    let still: Vec<f64> = (0..rest).map(|_| 5.0 + noise.next()).collect();
+    // The shaft stops half way between two pulses.
+    let at = 51_200 + 256;
+    let stopped = [&x[..at], &still, &x[at..]].concat();
+    let pulses = [&tacho[..at], &vec![0.0; rest][..], &tacho[at..]].concat();
+    scratch.write("rec.csv", &csv_text("x,tacho", &[&stopped, &pulses]));
+    let screen =
+        succeed(scratch.path(), &[&PLAIN[..], &["rec.csv", "--rate-hz", "5120", "--accept", "saturated"]].concat());
+    assert!(screen.contains("standstill: no pulses for 3.1"), "{screen}");
+    let out = scratch.path().join("out/rec");
+    let summary: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    // 120 turns, less one at each end and those that touch the rest.
+    let periods = summary["channels"]["x"]["average"]["periods"].as_u64().unwrap();
+    assert!((114..=118).contains(&periods), "{periods}");
+    let tsa: f64 = row(&table(&out.join("indicators.csv")), "rms", "tsa")["value"].parse().unwrap();
+    assert!((tsa - (0.5 * 1.09_f64).sqrt()).abs() < 0.02, "{tsa}");
+    assert!(row(&table(&out.join("indicators.csv")), "mean", "tsa")["value"].parse::<f64>().unwrap().abs() < 0.1);
+}
+
+/// Arrays of another length are named, not passed over.
+#[test]
+fn arrays_of_another_length_are_reported() {
+    let scratch = Scratch::new();
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../hums/tests/data");
+    let header: Vec<u8> = std::fs::read(data.join("compressed.mat")).unwrap()[..128].to_vec();
+    let array = |name: &str, numbers: &[f64]| -> Vec<u8> {
+        let mut name_bytes = name.as_bytes().to_vec();
+        name_bytes.resize(name.len().next_multiple_of(8), 0);
+        let mut body: Vec<u8> = Vec::new();
+        let tag = |body: &mut Vec<u8>, kind: u32, bytes: usize| {
+            body.extend(kind.to_le_bytes());
+            body.extend((bytes as u32).to_le_bytes());
+        };
+        tag(&mut body, 6, 8);
+        body.extend(6_u32.to_le_bytes());
+        body.extend(0_u32.to_le_bytes());
+        tag(&mut body, 5, 8);
+        body.extend((numbers.len() as u32).to_le_bytes());
+        body.extend(1_u32.to_le_bytes());
+        tag(&mut body, 1, name.len());
+        body.extend(name_bytes);
+        tag(&mut body, 9, 8 * numbers.len());
+        body.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
+        let mut element = Vec::new();
+        tag(&mut element, 14, body.len());
+        element.extend(body);
+        element
+    };
+    let [x, tacho] = recording(20_480, Holds { noise: 0.2, ..Holds::default() }, 99);
+    let file = [header, array("tacho", &tacho), array("x", &x), array("torque", &x[..5000])].concat();
+    std::fs::write(scratch.path().join("rec.mat"), file).unwrap();
+    let screen = succeed(scratch.path(), &[&PLAIN[..], &["rec.mat", "--rate-hz", "5120"]].concat());
+    assert!(screen.contains("left-out: array \"torque\" of 5000 by 1"), "{screen}");
+}
+
+/// Wide files take memory for the data they have; more channels than memory allows are refused with a remedy.
+#[cfg(target_os = "linux")]
+#[test]
+fn memory_follows_the_data() {
+    let scratch = Scratch::new();
+    let columns = 20_000;
+    let row = vec!["1.5"; columns].join(",");
+    let other = vec!["-2.5"; columns].join(",");
+    let text_of: String = (0..200).map(|k| format!("{}\n", if k % 2 == 0 { &row } else { &other })).collect();
+    scratch.write("wide.csv", &text_of);
+    // 1 GiB of address space: the 8 GB of a kernel table a channel do not fit.
+    let limited = |arguments: &[&str]| {
+        let command = "ulimit -v 1048576; exec \"$0\" \"$@\"";
+        Command::new("sh")
+            .args(["-c", command, env!("CARGO_BIN_EXE_gearwright")])
+            .args(arguments)
+            .current_dir(scratch.path())
+            .output()
+            .unwrap()
+    };
+    let flags =
+        ["hums", "--signal", "wide.csv", "--teeth", "3", "--sideband-pairs", "0", "--no-plots", "--threads", "1"];
+    let output = limited(&[&flags[..], &["--rate-hz", "100", "--speed-hz", "10"]].concat());
+    let message = text(&output.stderr);
+    assert!(output.status.success(), "{message}");
+    let output = limited(&[&flags[..], &["--rate-hz", "1000000", "--speed-hz", "1"]].concat());
+    let message = text(&output.stderr);
+    assert!(
+        !output.status.success() && message.contains("20000 channels take") && message.contains("--channel"),
+        "{message}"
+    );
+}
+
+/// Devices and pipes are no recordings.
+#[cfg(unix)]
+#[test]
+fn devices_are_refused_at_once() {
+    let scratch = Scratch::new();
+    for target in ["/dev/zero", "/dev/stdin"] {
+        let link = scratch.path().join("rec.csv");
+        let _ = std::fs::remove_file(&link);
+        std::os::unix::fs::symlink(target, &link).unwrap();
+        let mut run = Command::new(env!("CARGO_BIN_EXE_gearwright"))
+            .args(PLAIN)
+            .args(["rec.csv", "--rate-hz", "5120"])
+            .current_dir(scratch.path())
+            .stdin(std::process::Stdio::piped())
+            .stderr(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut message = String::new();
+        run.stderr.take().unwrap().read_to_string(&mut message).unwrap();
+        assert!(
+            !run.wait().unwrap().success() && message.contains("neither a file nor a folder"),
+            "{target}: {message}"
+        );
+    }
 }

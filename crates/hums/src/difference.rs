@@ -12,7 +12,12 @@
 //! | rule | residual removes | difference removes as well |
 //! |---|---|---|
 //! | [`RemovalRule::sidebands`] (D 5.4.2, D 6.4.1) | mesh harmonics | k sideband pairs, k = 0 to 5 |
-//! | [`RemovalRule::shaft_and_mesh`] (Zakrajsek 1993, NASA TM-105950; Lebold 2000) | mesh harmonics, shaft orders 1 and 2, mean | first sideband pair |
+//! | [`RemovalRule::shaft_and_mesh`] | mesh harmonics, shaft orders 1 and 2, mean | first sideband pair |
+//!
+//! The second is the convention of most publications: regular meshing components are the shaft frequency and its harmonics, the mesh frequency
+//! and its harmonics, and the first-order sidebands of these (Zakrajsek, Townsend and Decker 1993, NASA TM-105950; Lebold, McClintic, Campbell, Byington
+//! and Maynard 2000, Proc. 54th MFPT; Vecer, Kreidl and Smid 2005, Acta Polytechnica 45(6):35). They do not say how many shaft harmonics; all of them
+//! would be every bin of an average over one turn. Two, of unbalance and misalignment, are taken here.
 //!
 //! Setting bins to zero spreads the removed part of a local event over the whole period: the
 //! "new steady-state vibrations" of D 5.4.2. The exact difference signal,
@@ -45,7 +50,7 @@ pub struct RemovalRule {
     /// Distance between sidebands, cycles per record: 1 for sidebands at shaft order in a record of
     /// one revolution; the number of planets for planet-pass sidebands in a record of one carrier turn.
     pub sideband_spacing: usize,
-    /// Shaft orders `1..=shaft_orders` removed from residual and difference.
+    /// Shaft orders, 1 to this number times `sideband_spacing`, removed from residual and difference.
     pub shaft_orders: usize,
     /// Remove order 0 (the mean).
     pub remove_mean: bool,
@@ -66,7 +71,7 @@ impl RemovalRule {
         }
     }
 
-    /// The convention of most HUMS literature: mesh harmonics, shaft orders 1 and 2 and the mean
+    /// The convention of most publications (see the module): mesh harmonics, shaft orders 1 and 2 and the mean
     /// leave the residual, first sidebands leave the difference.
     #[must_use]
     pub fn shaft_and_mesh(mesh_order: usize) -> Self {
@@ -87,7 +92,8 @@ impl RemovalRule {
 
     fn orders(&self, samples: usize, pairs: usize) -> Vec<usize> {
         let highest = samples / 2;
-        let mut removed: Vec<usize> = (1..=self.shaft_orders.min(highest)).collect();
+        let shaft = self.sideband_spacing.max(1);
+        let mut removed: Vec<usize> = (1..=self.shaft_orders.min(highest / shaft)).map(|k| k * shaft).collect();
         if self.remove_mean {
             removed.push(0);
         }

@@ -2,7 +2,7 @@
 //!
 //! `Err` always means that no number can be given: the input is malformed, or the quantity is not
 //! defined for it (a crest factor of silence). Values that are defined but suspicious are returned,
-//! and [`crate::signal::inspect`] says what is odd about the record.
+//! and [`crate::quality`] says what is odd about the record.
 
 /// Why a quantity could not be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

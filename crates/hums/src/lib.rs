@@ -10,7 +10,9 @@
 //! | module | what it does |
 //! |---|---|
 //! | `io` (feature `io`) | recordings from CSV, TSV, WAV, NPY, MAT v5, block by block |
-//! | [`signal`] | gaps, clipping, trends of a record |
+//! | [`quality`] | whether a channel can be judged: dead, gaps, clipped, saturated, dropouts, drift |
+//! | [`signal`] | gaps and trends of a record |
+//! | [`time_axis`] | time columns: step, missing rows, changes of rate |
 //! | [`tachometer`] | pulses with faults to shaft angle |
 //! | [`resample`] | values between samples, time to angle |
 //! | [`tsa`] | synchronous averages, whole and streamed; the comb filter |
@@ -20,13 +22,14 @@
 //! | [`moments`] | streaming moments up to order eight |
 //! | [`indicator`] | condition indicators: single, in tables, with a memory |
 //! | [`threshold`] | limits, rates, receiver operating characteristic, alarms |
+//! | [`detectability`] | probability of detection over severity, a90/95 |
 //! | [`phenomenon`] | damped-sine model of damage: fit, densities, closed forms, several modes |
 //! | [`damage_type`] | crack or pit, and how much of it, from the static transmission error |
 //! | [`modal_fit`] | modes from ringing by matrix pencil and Prony |
 //!
 //! Citations "D n.n" are to the dissertation that the project reproduces: see `docs/references.bib`.
-//! Where its print and the derivation disagree, the code follows the derivation and the module says
-//! so ([`phenomenon`]).
+//! Where its print and the derivation disagree, the code follows the derivation (`docs/signals.md` lists
+//! the places).
 //!
 //! From a record and its tachometer to a verdict:
 //!
@@ -66,7 +69,9 @@
 #![cfg_attr(not(test), warn(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout))]
 
 pub mod damage_type;
+pub mod detectability;
 pub mod difference;
+mod distribution;
 pub mod envelope;
 mod error;
 pub mod indicator;
@@ -75,12 +80,14 @@ pub mod io;
 pub mod modal_fit;
 pub mod moments;
 pub mod phenomenon;
+pub mod quality;
 pub mod resample;
 pub mod separation;
 pub mod signal;
 pub mod spectrum;
 pub mod tachometer;
 pub mod threshold;
+pub mod time_axis;
 pub mod tsa;
 
 pub use error::{HumsError, Result};

@@ -295,7 +295,7 @@ impl MomentAccumulator {
     pub fn with_peak(peak: f64) -> Self {
         let exponent = if peak.is_finite() && peak > 0.0 { peak.log2().floor() } else { 0.0 };
         let scale = if exponent.abs() > 60.0 { (-exponent).clamp(-1000.0, 1000.0).exp2() } else { 1.0 };
-        Self { total: Moments::empty(scale), pending: Vec::with_capacity(BLOCK) }
+        Self { total: Moments::empty(scale), pending: Vec::new() }
     }
 
     /// Adds samples.

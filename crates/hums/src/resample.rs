@@ -29,6 +29,7 @@ use crate::error::{HumsError, Result, require_finite, require_len, require_posit
 use crate::tachometer::Shaft;
 use gear_numerics::spline;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// How values between samples are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,15 +64,15 @@ const MAX_OVERSAMPLING: f64 = 1024.0;
 /// Kernel table resolution, points per sample.
 const TABLE: usize = 512;
 
-/// An interpolation made ready: kernel table, work space.
+/// An interpolation made ready: kernel table (shared by clones), work space.
 #[derive(Debug, Clone)]
 pub struct Resampler {
     method: Interpolation,
     /// Kernel value and slope (per table step) at `i / TABLE` samples, for i = 0..=L * TABLE.
-    kernel: Vec<[f64; 2]>,
+    kernel: Arc<[[f64; 2]]>,
     /// The same kernel by phase: for phase j of 0..=TABLE the 2 L values at taps `k - j / TABLE`,
     /// k = 1 - L..=L, then their 2 L slopes per phase step.
-    phases: Vec<f64>,
+    phases: Arc<[f64]>,
     slopes: Vec<f64>,
 }
 
@@ -101,7 +102,7 @@ impl Resampler {
             Interpolation::BandLimited { half_width, .. } => by_phase(&kernel, half_width),
             _ => Vec::new(),
         };
-        Ok(Self { method, kernel, phases, slopes: Vec::new() })
+        Ok(Self { method, kernel: kernel.into(), phases: phases.into(), slopes: Vec::new() })
     }
 
     /// The method.

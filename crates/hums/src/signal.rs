@@ -1,66 +1,14 @@
-//! What a recording looks like before anything is computed from it: gaps, clipping, constancy.
+//! Gaps, trends and times of a record.
 //!
-//! Problem. Recorded vibration has holes (NaN, infinite values), flat tops where the converter
-//! clipped, and channels that were never connected. Indicators refuse non-finite samples; this
-//! module finds them, fills short gaps, and reports the rest.
+//! Problem. Recorded vibration has holes (NaN, infinite values) and offsets. Most functions refuse
+//! non-finite samples; this module fills short gaps and removes trends. What else may be wrong with
+//! a record is found by [`crate::quality`].
 //!
 //! Units: whatever the signal has; indices count samples from 0.
 //! Verified by `tests/extremes.rs`.
 
 use crate::error::{HumsError, Result, require_finite, require_len, require_positive};
 use std::ops::Range;
-
-/// Health of one recorded channel.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SignalQuality {
-    /// Samples in the record.
-    pub samples: usize,
-    /// Runs of NaN or infinite samples.
-    pub gaps: Vec<Range<usize>>,
-    /// Samples inside those runs.
-    pub missing: usize,
-    /// Runs of at least `clip_run` equal samples at the record's own maximum or minimum.
-    pub clipped: Vec<Range<usize>>,
-    /// Every finite sample has the same value.
-    pub constant: bool,
-    /// Smallest finite sample; `None` when there is none.
-    pub min: Option<f64>,
-    /// Largest finite sample; `None` when there is none.
-    pub max: Option<f64>,
-}
-
-impl SignalQuality {
-    /// No gaps, no clipping, not constant, not empty.
-    #[must_use]
-    pub fn is_clean(&self) -> bool {
-        self.samples > 0 && self.gaps.is_empty() && self.clipped.is_empty() && !self.constant
-    }
-}
-
-/// Looks a record over. `clip_run` (>= 2) is the number of equal consecutive samples at an extreme
-/// that counts as clipping; 3 suits 16- and 24-bit recordings.
-///
-/// A constant record is reported as constant, not as clipped.
-#[must_use]
-pub fn inspect(signal: &[f64], clip_run: usize) -> SignalQuality {
-    let finite = || signal.iter().copied().filter(|x| x.is_finite());
-    let min = finite().reduce(f64::min);
-    let max = finite().reduce(f64::max);
-    let gaps = runs(signal, |x| !x.is_finite(), 1);
-    let missing = gaps.iter().map(Range::len).sum();
-    let constant = match (min, max) {
-        (Some(low), Some(high)) => low >= high,
-        _ => false,
-    };
-    let mut clipped = Vec::new();
-    if let (Some(low), Some(high), false) = (min, max, constant) {
-        clipped = runs(signal, |x| x >= high, clip_run.max(2));
-        clipped.extend(runs(signal, |x| x <= low, clip_run.max(2)));
-        clipped.retain(|run| signal[run.start].is_finite());
-        clipped.sort_by_key(|run| run.start);
-    }
-    SignalQuality { samples: signal.len(), gaps, missing, clipped, constant, min, max }
-}
 
 fn runs(signal: &[f64], hit: impl Fn(f64) -> bool, shortest: usize) -> Vec<Range<usize>> {
     let mut found = Vec::new();

@@ -7,7 +7,8 @@
 //! Method. (1) [`pulse_times`], streamed by [`PulseFinder`]: crossings of a level with hysteresis, placed between samples by
 //! linear interpolation. (2) [`repair`]: pulses are matched one after the other to the interval
 //! predicted by the median of the last five: the candidate nearest to the prediction wins, others
-//! near it are extra; where none is, pulses are missing and the count jumps over them. (3)
+//! near it are extra; where none is, pulses are missing and the count jumps over them. More than
+//! [`MAX_BRIDGED`] missing in a row are a hole: the shaft may have stood still, and nothing is known of its angle. (3)
 //! [`Shaft`]: time over turns through the pulses as a cubic spline whose slopes are limited after
 //! Hyman (1983, SIAM J. Sci. Stat. Comput. 4:645), so that time always increases with angle while
 //! smooth speed changes keep the spline's fourth order.
@@ -54,11 +55,11 @@ pub struct PulseOptions {
 pub fn pulse_times(channel: &[f64], rate: f64, options: &PulseOptions) -> Result<Vec<f64>> {
     require_positive("sampling rate", rate)?;
     require_len("tachometer", channel, 2)?;
-    let quality = crate::signal::inspect(channel, 2);
-    let (Some(min), Some(max)) = (quality.min, quality.max) else {
+    let finite = || channel.iter().copied().filter(|x| x.is_finite());
+    let (Some(min), Some(max)) = (finite().reduce(f64::min), finite().reduce(f64::max)) else {
         return Err(tachometer("the channel has no finite sample", 0));
     };
-    if quality.constant {
+    if min >= max {
         return Err(tachometer("the channel is constant", 0));
     }
     let level = options.level.unwrap_or(min / 2.0 + max / 2.0);
@@ -147,13 +148,43 @@ pub struct RepairedPulses {
     pub missing: u64,
     /// Pulses that were left out as extra.
     pub extra: u64,
+    /// Pulses (indices of `times`) after which the angle is not known until the next: a standstill, or many pulses
+    /// missing.
+    pub holes: Vec<usize>,
+}
+
+impl RepairedPulses {
+    /// The longest stretch without a hole, its pulses numbered from 0.
+    #[must_use]
+    pub fn longest_stretch(&self) -> Self {
+        let mut begins = vec![0];
+        begins.extend(self.holes.iter().map(|i| i + 1));
+        let ends = begins.iter().skip(1).copied().chain([self.times.len()]);
+        let duration = |range: &std::ops::Range<usize>| self.times[range.end - 1] - self.times[range.start];
+        let longest = begins
+            .iter()
+            .zip(ends)
+            .map(|(begin, end)| *begin..end)
+            .max_by(|a, b| duration(a).total_cmp(&duration(b)).then(b.start.cmp(&a.start)));
+        let range = longest.unwrap_or(0..self.times.len());
+        let first = self.numbers[range.start];
+        Self {
+            times: self.times[range.clone()].to_vec(),
+            numbers: self.numbers[range].iter().map(|k| k - first).collect(),
+            holes: Vec::new(),
+            ..*self
+        }
+    }
 }
 
 /// Share of missing or extra pulses above which [`repair`] gives up.
 pub const MAX_FAULTY_SHARE: f64 = 0.25;
 
-/// Pulses that may be missing in one place; a longer hole ends in an error anyway.
-const MOST_MISSING: f64 = 1e9;
+/// Missing pulses in a row that are bridged; more are a hole.
+pub const MAX_BRIDGED: u64 = 3;
+
+/// Pulses that a hole counts for at most.
+const MAX_IN_HOLE: f64 = 1e9;
 
 /// Sorts out missing and extra pulses.
 ///
@@ -167,7 +198,13 @@ pub fn repair(times: &[f64]) -> Result<RepairedPulses> {
     // The first pulse may itself be an extra one: begin with the pulse followed by a good interval.
     let fits = |dt: f64, expected: f64| (dt / expected - 1.0).abs() < 0.25;
     let start = (0..times.len().min(8) - 1).find(|&i| fits(times[i + 1] - times[i], first_guess)).unwrap_or(0);
-    let mut kept = RepairedPulses { times: vec![times[start]], numbers: vec![0], missing: 0, extra: start as u64 };
+    let mut kept = RepairedPulses {
+        times: vec![times[start]],
+        numbers: vec![0],
+        missing: 0,
+        extra: start as u64,
+        holes: Vec::new(),
+    };
     let mut intervals = vec![first_guess; 1];
     let mut i = start + 1;
     while i < times.len() {
@@ -187,17 +224,27 @@ pub fn repair(times: &[f64]) -> Result<RepairedPulses> {
                 i += 1;
                 continue;
             }
-            None => (i, ratio(i).round().min(MOST_MISSING) as u64),
+            None => (i, ratio(i).round().min(MAX_IN_HOLE) as u64),
         };
         kept.extra += (chosen - i) as u64;
-        kept.missing += steps - 1;
-        intervals.push((times[chosen] - last) / steps as f64);
+        if steps - 1 > MAX_BRIDGED {
+            kept.holes.push(kept.times.len() - 1);
+            // The speed after it is that of the pulses after it.
+            intervals.clear();
+            let mut next: Vec<f64> = times[chosen..].windows(2).take(5).map(|w| w[1] - w[0]).collect();
+            intervals.push(if next.is_empty() { expected } else { median(&mut next) });
+        } else {
+            kept.missing += steps - 1;
+            intervals.push((times[chosen] - last) / steps as f64);
+        }
         kept.times.push(times[chosen]);
         kept.numbers.push(number + steps);
         i = chosen + 1;
     }
     let faults = (kept.missing + kept.extra) as f64;
-    if faults > MAX_FAULTY_SHARE * (numbers_last(&kept) + 1) as f64 {
+    if faults > MAX_FAULTY_SHARE * (kept.times.len() as u64 + kept.missing) as f64
+        || kept.holes.len() as f64 > MAX_FAULTY_SHARE * kept.times.len() as f64
+    {
         return Err(tachometer(
             "more than a quarter of the pulses are missing or extra, or the speed jumps",
             times.len() - 1,
@@ -246,6 +293,8 @@ pub struct Shaft {
     times: Vec<f64>,
     /// d time / d turn at the nodes, >= 0, s.
     slopes: Vec<f64>,
+    /// Intervals (numbers of their first nodes, rising) in which the angle is not known.
+    holes: Vec<usize>,
 }
 
 impl Shaft {
@@ -264,7 +313,12 @@ impl Shaft {
         if !(MIN_SPEED < speed && speed < 1.0 / MIN_SPEED && (end * speed).is_finite()) {
             return Err(tachometer("the speed is outside 1e-100 to 1e100 Hz", 0));
         }
-        Ok(Self { turns: vec![0.0, end * speed], times: vec![0.0, end], slopes: vec![1.0 / speed; 2] })
+        Ok(Self {
+            turns: vec![0.0, end * speed],
+            times: vec![0.0, end],
+            slopes: vec![1.0 / speed; 2],
+            holes: Vec::new(),
+        })
     }
 
     /// From pulse times (s), `per_turn` pulses a revolution, taken as they are; turn 0 is the first.
@@ -276,7 +330,7 @@ impl Shaft {
         check_increasing(times)?;
         require_positive("pulses per turn", per_turn)?;
         let turns = (0..times.len()).map(|i| i as f64 / per_turn).collect();
-        Self::through(turns, times.to_vec())
+        Self::through(turns, times.to_vec(), Vec::new())
     }
 
     /// From repaired pulses, `per_turn` a revolution.
@@ -296,8 +350,12 @@ impl Shaft {
         if let Some(i) = pulses.numbers.windows(2).position(|w| w[1] <= w[0]) {
             return Err(tachometer("pulse numbers do not increase", i + 1));
         }
+        let increasing = pulses.holes.windows(2).all(|w| w[0] < w[1]);
+        if !increasing || pulses.holes.last().is_some_and(|last| last + 1 >= pulses.times.len()) {
+            return Err(tachometer("holes are not between pulses, or do not increase", pulses.times.len()));
+        }
         let turns = pulses.numbers.iter().map(|k| *k as f64 / per_turn);
-        Self::through(turns.collect(), pulses.times.clone())
+        Self::through(turns.collect(), pulses.times.clone(), pulses.holes.clone())
     }
 
     /// Pulse channel to shaft in one call: [`pulse_times`], [`repair`], [`Self::from_repaired`].
@@ -314,7 +372,7 @@ impl Shaft {
         Ok((Self::from_repaired(&pulses, per_turn)?, pulses))
     }
 
-    fn through(turns: Vec<f64>, times: Vec<f64>) -> Result<Self> {
+    fn through(turns: Vec<f64>, times: Vec<f64>, holes: Vec<usize>) -> Result<Self> {
         let speeds = turns.windows(2).zip(times.windows(2));
         let sound = |(a, t): (&[f64], &[f64])| {
             let speed = (a[1] - a[0]) / (t[1] - t[0]);
@@ -322,6 +380,9 @@ impl Shaft {
         };
         if let Some(i) = speeds.into_iter().position(|pair| !sound(pair)) {
             return Err(tachometer("the speed is outside 1e-100 to 1e100 Hz", i));
+        }
+        if holes.len() + 1 == turns.len() {
+            return Err(tachometer("the shaft stands still, or nearly all pulses are missing", turns.len()));
         }
         let mut slopes = spline::slopes(&turns, &times);
         let secant = |i: usize| (times[i + 1] - times[i]) / (turns[i + 1] - turns[i]);
@@ -331,7 +392,19 @@ impl Shaft {
             let right = secant(i.min(n - 2));
             *slope = slope.max(0.0).min(3.0 * left.min(right));
         }
-        Ok(Self { turns, times, slopes })
+        Ok(Self { turns, times, slopes, holes })
+    }
+
+    /// Turns and times (s) between which the angle is not known: the shaft stood still, or many pulses are missing.
+    pub fn holes(&self) -> impl Iterator<Item = [(f64, f64); 2]> {
+        let node = |i: usize| (self.turns[i], self.times[i]);
+        self.holes.iter().map(move |&i| [node(i), node(i + 1)])
+    }
+
+    /// Turn at which a hole ends that turns from `first` to `last` touch.
+    pub(crate) fn hole_end(&self, first: f64, last: f64) -> Option<f64> {
+        let next = self.holes.partition_point(|&i| self.turns[i + 1] <= first);
+        self.holes.get(next).filter(|&&i| self.turns[i] < last).map(|&i| self.turns[i + 1])
     }
 
     /// Another shaft geared to this one: it makes `ratio` turns for each turn of this one
@@ -347,6 +420,7 @@ impl Shaft {
             turns: self.turns.iter().map(|x| x * ratio).collect(),
             times: self.times.clone(),
             slopes: self.slopes.iter().map(|x| x / ratio).collect(),
+            holes: self.holes.clone(),
         })
     }
 
@@ -426,11 +500,13 @@ impl Shaft {
         (slowness > 0.0).then(|| 1.0 / slowness)
     }
 
-    /// Slowest and fastest mean speed between pulses, Hz.
+    /// Slowest and fastest mean speed between pulses, Hz; holes do not count.
     #[must_use]
     pub fn speed_range(&self) -> (f64, f64) {
-        let speeds = self.turns.windows(2).zip(self.times.windows(2));
+        let speeds = self.turns.windows(2).zip(self.times.windows(2)).enumerate();
         speeds
+            .filter(|(i, _)| self.holes.binary_search(i).is_err())
+            .map(|(_, pair)| pair)
             .map(|(a, t)| (a[1] - a[0]) / (t[1] - t[0]))
             .fold((f64::INFINITY, 0.0), |(low, high), v| (f64::min(low, v), f64::max(high, v)))
     }

@@ -11,7 +11,7 @@
 //!
 //! Blocks begin at whole multiples of the period counted from turn 0 (the first pulse), so averages
 //! of several recordings share their phase. A block that touches a gap (a non-finite sample) is left
-//! out and counted.
+//! out and counted; one that touches a hole of the tachometer ([`Shaft::holes`]) is left out.
 //!
 //! | symbol | field | unit |
 //! |---|---|---|
@@ -26,6 +26,7 @@ use crate::error::{HumsError, Result, require_positive};
 use crate::resample::{Interpolation, Resampler};
 use crate::tachometer::Shaft;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// What to average over.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,15 +119,15 @@ pub fn average(signal: &[f64], rate: f64, shaft: &Shaft, options: &TsaOptions) -
 /// [`HumsError::Parameter`] for `per_period` = 0.
 pub fn average_periods(signal: &[f64], per_period: usize, max_blocks: Option<usize>) -> Result<Average> {
     require_positive("samples per period", per_period as f64)?;
-    let mut sums = Sums::new(per_period);
+    let mut sums = Sums::default();
     for block in signal.chunks_exact(per_period).take(max_blocks.unwrap_or(usize::MAX)) {
         sums.add(block);
     }
     sums.finish()
 }
 
-/// Running mean and spread of blocks (Welford 1962).
-#[derive(Debug, Clone)]
+/// Running mean and spread of blocks (Welford 1962); without memory until the first one.
+#[derive(Debug, Clone, Default)]
 struct Sums {
     mean: Vec<f64>,
     squares: Vec<f64>,
@@ -135,15 +136,13 @@ struct Sums {
 }
 
 impl Sums {
-    fn new(samples: usize) -> Self {
-        Self { mean: vec![0.0; samples], squares: vec![0.0; samples], blocks: 0, skipped: 0 }
-    }
-
     fn add(&mut self, block: &[f64]) {
         if !block.iter().all(|x| x.is_finite()) {
             self.skipped += 1;
             return;
         }
+        self.mean.resize(block.len(), 0.0);
+        self.squares.resize(block.len(), 0.0);
         self.blocks += 1;
         let weight = 1.0 / self.blocks as f64;
         for ((mean, square), x) in self.mean.iter_mut().zip(&mut self.squares).zip(block) {
@@ -174,7 +173,7 @@ impl Sums {
 #[derive(Debug, Clone)]
 pub struct Averager {
     rate: f64,
-    shaft: Shaft,
+    shaft: Arc<Shaft>,
     options: TsaOptions,
     resampler: Resampler,
     sums: Sums,
@@ -193,7 +192,7 @@ pub struct Averager {
 enum Place {
     /// Inside: first and one past the last sample needed.
     Ready(usize, usize),
-    /// Needs samples before the first of the record.
+    /// Needs samples before the first of the record, or touches a hole of the tachometer.
     Before,
     /// Needs samples to come.
     Later,
@@ -207,7 +206,8 @@ impl Averager {
     /// # Errors
     /// [`HumsError::Parameter`] for a rate or period that is not positive, fewer than two samples a
     /// period, or interpolation parameters out of range.
-    pub fn new(rate: f64, shaft: Shaft, options: TsaOptions) -> Result<Self> {
+    pub fn new(rate: f64, shaft: impl Into<Arc<Shaft>>, options: TsaOptions) -> Result<Self> {
+        let shaft = shaft.into();
         require_positive("sampling rate", rate)?;
         require_positive("averaging period", options.period_turns)?;
         if !(2..=crate::resample::MAX_PER_PERIOD).contains(&options.samples_per_period) {
@@ -242,7 +242,7 @@ impl Averager {
             rate,
             shaft,
             resampler: Resampler::new(options.interpolation)?,
-            sums: Sums::new(options.samples_per_period),
+            sums: Sums::default(),
             next,
             buffer: Vec::new(),
             offset: 0,
@@ -323,6 +323,10 @@ impl Averager {
         let last_turn = first_turn + (count - 1) as f64 * step_turns;
         if self.sums.blocks >= wanted || last_turn > self.shaft.turn_range().1 + 1e-9 * period {
             return Place::End;
+        }
+        if let Some(end) = self.shaft.hole_end(first_turn, last_turn + step_turns) {
+            self.next = (end / period - 1e-9).ceil().max(self.next + 1.0) - 1.0;
+            return Place::Before;
         }
         self.positions.clear();
         self.shaft.times_of(first_turn, step_turns, count, &mut self.positions);

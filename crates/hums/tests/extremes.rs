@@ -5,11 +5,13 @@ use common::{close, gaussian, max_difference, sine};
 use hums::HumsError;
 use hums::difference::{RemovalRule, split};
 use hums::envelope::{analytic_signal, demodulate, envelope, envelope_spectrum};
+use hums::indicator::basic::Ends;
 use hums::indicator::trend::{Memory, QuasiKurtosis};
 use hums::indicator::{Entry, GearAnalyzer, Indicator, SignalKind, basic, signal_indicators};
 use hums::moments::{MomentAccumulator, Moments};
+use hums::quality::ChannelQuality;
 use hums::resample::{Interpolation, to_angle};
-use hums::signal::{detrend, fill_gaps, inspect, longest_finite_run};
+use hums::signal::{detrend, fill_gaps, longest_finite_run};
 use hums::spectrum::{Spectrum, Window, spectrogram};
 use hums::tachometer::{PulseOptions, Shaft, repair};
 use hums::tsa::{TsaOptions, average};
@@ -53,8 +55,8 @@ fn extreme_constant_signals_are_constant_at_any_size() {
             close(value(&table, Indicator::Rms).clone().unwrap(), c.abs(), 1e-15);
             close(value(&table, Indicator::CrestFactor).clone().unwrap(), 1.0, 1e-15);
             assert!(matches!(value(&table, Indicator::Kurtosis), Err(HumsError::Undefined { .. })));
-            let quality = inspect(&x, 3);
-            assert!(quality.constant && quality.clipped.is_empty());
+            let quality = ChannelQuality::of(&x);
+            assert!(quality.is_constant() && quality.clipped.count == 0 && quality.dropouts.count == 0);
         }
     }
     // sums of the transform overflow
@@ -93,8 +95,8 @@ fn extreme_empty_signals_are_refused() {
     assert!(analytic_signal(&[]).is_err() && envelope_spectrum(&[]).is_err());
     assert!(detrend(&mut [], true).is_err());
     assert!(MomentAccumulator::default().finish().is_err());
-    let quality = inspect(&[], 3);
-    assert!(!quality.is_clean() && quality.min.is_none() && !quality.constant);
+    let quality = ChannelQuality::of(&[]);
+    assert!(!quality.is_clean() && quality.range.is_none() && !quality.is_constant());
     assert_eq!(longest_finite_run(&[]), 0..0);
 }
 
@@ -108,15 +110,20 @@ fn extreme_gaps_are_named_filled_or_refused() {
         Err(HumsError::NotFinite { index, .. }) => Some(*index),
         _ => None,
     };
-    for found in [basic::rms(&x), basic::kurtosis(&x), basic::energy_operator(&x), basic::normalized_moment(&x, 3.0)] {
+    for found in [
+        basic::rms(&x),
+        basic::kurtosis(&x),
+        basic::energy_operator(&x, Ends::Cyclic),
+        basic::normalized_moment(&x, 3.0),
+    ] {
         assert_eq!(index(&found), Some(300), "{found:?}");
     }
     assert!(Spectrum::of(&x, Window::Hann).is_err());
     assert!(envelope(&x).is_err() && demodulate(&x, 20, 5).is_err());
     assert!(spectrogram(&x, 1.0, 100, 50, Window::Hann).is_err());
     assert!(GearAnalyzer::new(1000, &RemovalRule::sidebands(27, 1)).unwrap().analyze(&x).is_err());
-    let quality = inspect(&x, 3);
-    assert_eq!((quality.gaps.clone(), quality.missing), (vec![300..302, 999..1000], 3));
+    let gaps = ChannelQuality::of(&x).gaps;
+    assert_eq!((gaps.count, gaps.samples, gaps.longest, gaps.first), (2, 3, 2, Some(300)));
     let before = x.clone();
     assert!(fill_gaps(&mut x, 1).is_err());
     assert!(x.iter().zip(&before).all(|(a, b)| a.to_bits() == b.to_bits()));
@@ -130,14 +137,14 @@ fn extreme_gaps_are_named_filled_or_refused() {
 #[test]
 fn extreme_clipped_signals() {
     let x: Vec<f64> = sine(10_000, 50.0, 1.0, 0.0).iter().map(|v| v.clamp(-0.8, 0.8)).collect();
-    let quality = inspect(&x, 3);
-    assert_eq!(quality.clipped.len(), 100);
+    let quality = ChannelQuality::of(&x);
+    assert_eq!(quality.clipped.count, 100);
     assert!(!quality.is_clean());
     // RMS of a sine clipped at c = sin a: 1/2 - a/pi ... by parts over a quarter period.
     let a = 0.8_f64.asin();
     let square = (a - a.sin() * a.cos() + 2.0 * 0.64 * (std::f64::consts::FRAC_PI_2 - a)) / std::f64::consts::PI;
     close(basic::rms(&x).unwrap(), square.sqrt(), 1e-4);
-    assert!(inspect(&sine(10_000, 50.0, 1.0, 0.1), 3).clipped.is_empty());
+    assert_eq!(ChannelQuality::of(&sine(10_000, 50.0, 1.0, 0.1)).clipped.count, 0);
 }
 
 #[test]
@@ -164,7 +171,11 @@ fn extreme_scales_do_not_overflow() {
     for scale in [1e-300, 1e-60, 1e60, 1e300] {
         let y: Vec<f64> = x.iter().map(|v| v * scale).collect();
         close(basic::m8a(&y).unwrap(), kurtosis, 1e-9);
-        close(basic::energy_operator(&y).unwrap(), basic::energy_operator(&x).unwrap(), 1e-9);
+        close(
+            basic::energy_operator(&y, Ends::Cyclic).unwrap(),
+            basic::energy_operator(&x, Ends::Cyclic).unwrap(),
+            1e-9,
+        );
         finite_or_reason(&signal_indicators(&y, SignalKind::Difference).unwrap());
         let analyzer = GearAnalyzer::new(4096, &RemovalRule::sidebands(27, 2)).unwrap();
         finite_or_reason(&analyzer.analyze(&y).unwrap().table);

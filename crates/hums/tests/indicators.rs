@@ -31,7 +31,7 @@ fn analytic_sine() {
     close(basic::m8a(&x).unwrap(), 4.375, EXACT);
     assert!(basic::skewness(&x).unwrap().abs() < EXACT);
     // A sine has constant Teager energy.
-    assert!(matches!(basic::energy_operator(&x), Err(HumsError::Undefined { .. })));
+    assert!(matches!(basic::energy_operator(&x, basic::Ends::Cyclic), Err(HumsError::Undefined { .. })));
 }
 
 #[test]
@@ -60,7 +60,7 @@ fn analytic_impulse_train() {
     close(basic::m8a(&x).unwrap(), central(8) / sigma.powi(8), EXACT);
     close(basic::crest_factor(&x, CrestDefinition::AbsolutePeak).unwrap(), 1.0 / p.sqrt(), EXACT);
     // Isolated impulses are their own Teager energy.
-    close(basic::energy_operator(&x).unwrap(), central(4) / sigma.powi(4), EXACT);
+    close(basic::energy_operator(&x, basic::Ends::Cyclic).unwrap(), central(4) / sigma.powi(4), EXACT);
 }
 
 #[test]
@@ -76,14 +76,14 @@ fn analytic_gaussian_limits() {
     assert!((basic::m8a(&x).unwrap() - 105.0).abs() < bound(2_027_025.0));
     // White Gaussian noise through the Teager operator: 9 (see the function's derivation); the
     // eighth moment of a^2 - bc is below 1e6.
-    assert!((basic::energy_operator(&x).unwrap() - 9.0).abs() < bound(1e6) / 9.0);
+    assert!((basic::energy_operator(&x, basic::Ends::Cyclic).unwrap() - 9.0).abs() < bound(1e6) / 9.0);
     let s_1 = basic::normalized_moment(&x, 1.0).unwrap();
     assert!((s_1 - (2.0 / std::f64::consts::PI).sqrt()).abs() < bound(1.0));
     for (indicator, found) in [
         (Indicator::Kurtosis, basic::kurtosis(&x).unwrap()),
         (Indicator::M6a, basic::m6a(&x).unwrap()),
         (Indicator::M8a, basic::m8a(&x).unwrap()),
-        (Indicator::EnergyOperator, basic::energy_operator(&x).unwrap()),
+        (Indicator::EnergyOperator, basic::energy_operator(&x, basic::Ends::Cyclic).unwrap()),
     ] {
         close(found, indicator.gaussian_value().unwrap(), 0.03);
     }
@@ -214,17 +214,51 @@ fn analytic_na4_of_growing_records() {
 #[test]
 fn invariant_streamed_tables_have_the_same_bits() {
     let x: Vec<f64> = gaussian(30_011, 55).iter().map(|g| 0.3 + 2.0 * g).collect();
-    for kind in [SignalKind::Raw, SignalKind::Difference] {
-        let whole = hums::indicator::signal_indicators(&x, kind).unwrap();
-        for piece in [1, 2, 3, 1000, 4097, 30_011] {
-            let mut stream = hums::indicator::StreamingIndicators::new(kind, 1.0);
-            x.chunks(piece).for_each(|part| stream.push(part).unwrap());
-            assert_eq!(stream.finish().unwrap(), whole, "{piece}");
+    let whole = hums::indicator::signal_indicators(&x, SignalKind::Raw).unwrap();
+    for piece in [1, 2, 3, 1000, 4097, 30_011] {
+        let mut stream = hums::indicator::StreamingIndicators::new(1.0);
+        x.chunks(piece).for_each(|part| stream.push(part).unwrap());
+        assert_eq!(stream.finish().unwrap(), whole, "{piece}");
+    }
+}
+
+/// Missing samples are left out of the moments; triples across a gap are left out of the energy operator.
+#[test]
+fn missing_samples_are_left_out_and_counted() {
+    let x = gaussian(20_000, 56);
+    let mut holed = x.clone();
+    for k in [0, 5000, 5001, 12_345, 19_999] {
+        holed[k] = f64::NAN;
+    }
+    let finite: Vec<f64> = holed.iter().copied().filter(|v| v.is_finite()).collect();
+    let expected = hums::indicator::signal_indicators(&finite, SignalKind::Raw).unwrap();
+    let triples: Vec<f64> =
+        holed.windows(3).filter(|w| w.iter().all(|v| v.is_finite())).map(|w| w[1] * w[1] - w[0] * w[2]).collect();
+    for piece in [1, 2, 7, 5001, 20_000] {
+        let mut stream = hums::indicator::StreamingIndicators::new(1.0);
+        holed.chunks(piece).for_each(|part| stream.push(part).unwrap());
+        assert_eq!(stream.missing(), 5);
+        for (found, expected) in stream.finish().unwrap().iter().zip(&expected) {
+            if found.indicator == Indicator::EnergyOperator {
+                close(found.value.clone().unwrap(), basic::kurtosis(&triples).unwrap(), 1e-12);
+            } else {
+                assert_eq!(found, expected, "{piece}");
+            }
         }
     }
-    let mut stream = hums::indicator::StreamingIndicators::new(SignalKind::Raw, 1.0);
-    stream.push(&[1.0, 2.0]).unwrap();
-    assert!(matches!(stream.push(&[1.0, f64::NAN]), Err(HumsError::NotFinite { index: 3, .. })));
+}
+
+/// A record does not close on itself: a step between its ends is no impulse.
+#[test]
+fn raw_records_have_no_energy_across_their_ends() {
+    let x: Vec<f64> = gaussian(5000, 57).iter().enumerate().map(|(i, g)| 0.01 * i as f64 + g).collect();
+    let of = |ends| basic::energy_operator(&x, ends).unwrap();
+    let inner: Vec<f64> = x.windows(3).map(|w| w[1] * w[1] - w[0] * w[2]).collect();
+    close(of(basic::Ends::Open), basic::kurtosis(&inner).unwrap(), 1e-12);
+    assert!(of(basic::Ends::Cyclic) > 3.0 * of(basic::Ends::Open), "50 sigma between the ends");
+    let table = signal_indicators(&x, SignalKind::Raw).unwrap();
+    let raw = table.iter().find(|e| e.indicator == Indicator::EnergyOperator).unwrap();
+    assert_eq!(raw.value, Ok(of(basic::Ends::Open)));
 }
 
 /// One workspace for averages of several lengths and rules, among them one without mesh envelope (mesh order 1 has no band): every analysis

@@ -6,7 +6,7 @@
 mod common;
 use common::gaussian;
 use hums::io::text::{TextOptions, TextReader};
-use hums::io::{BlockReader, ReadError, Recording, mat, npy, open, parquet, rate_of_times, read_all, wav};
+use hums::io::{BlockReader, ReadError, Recording, mat, npy, open, parquet, read_all, wav};
 use proptest::prelude::*;
 use std::io::{Cursor, Write as _};
 use std::sync::Arc;
@@ -58,8 +58,8 @@ fn extreme_gaps_and_faults_of_text() {
     let r = text("t,a\n0,1\n1,\n2,NaN\n3,n/a\n4,5\n").unwrap();
     assert_eq!(r.channels[0], [0.0, 1.0, 2.0, 3.0, 4.0]);
     assert!(r.channels[1][1..4].iter().all(|x| x.is_nan()));
-    let quality = hums::signal::inspect(&r.channels[1], 3);
-    assert_eq!((quality.gaps, quality.missing), (vec![1..4], 3));
+    let gaps = hums::quality::ChannelQuality::of(&r.channels[1]).gaps;
+    assert_eq!((gaps.first, gaps.samples), (Some(1), 3));
     match text("t,a\n0,1\n1,2\n2,hello\n") {
         Err(ReadError::Cell { line: 4, column: 2, text }) => assert_eq!(text, "hello"),
         other => panic!("{other:?}"),
@@ -319,7 +319,7 @@ fn invariant_mat_compressed_or_not_whole_or_in_blocks() {
     let middle = bytes.len() - 200_000;
     bytes[middle..middle + 64].fill(0xff);
     let fault = read_mat(bytes).unwrap_err().to_string();
-    assert!(fault.contains("\"by_columns("), "{fault}");
+    assert!(fault.contains("\"by_columns"), "{fault}");
 }
 
 #[test]
@@ -423,9 +423,7 @@ fn analytic_files_by_extension() {
     std::fs::write(&path, "t,a\n0,1\n0.25,2\n0.5,3\n").unwrap();
     let mut reader = open(&path, &TextOptions::default()).unwrap();
     let r = read_all(reader.as_mut()).unwrap();
-    assert_eq!(rate_of_times(&r.channels[0]).unwrap(), 4.0);
-    assert!(rate_of_times(&[0.0, 1.0, 2.0, 9.0]).is_err());
-    assert!(rate_of_times(&[0.0, 1.0, 0.5, 3.0]).is_err());
+    assert_eq!(hums::time_axis::step_of(&r.channels[0]).unwrap(), 0.25);
     for (file, channels) in [("snappy.parquet", 7), ("compressed.mat", 3)] {
         let mut reader = open(&std::path::Path::new("tests/data").join(file), &TextOptions::default()).unwrap();
         let r = read_all(reader.as_mut()).unwrap();
@@ -435,4 +433,19 @@ fn analytic_files_by_extension() {
     assert!(matches!(missing, Err(ReadError::File { .. })));
     let unknown = open(&folder.path().join("x.h5"), &TextOptions::default());
     assert!(matches!(unknown, Err(ReadError::UnknownExtension { .. })));
+}
+
+/// Only regular files: a device never ends, a pipe waits for its writer.
+#[cfg(unix)]
+#[test]
+fn extreme_devices_and_pipes_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["rec.csv", "rec.mat", "rec.parquet"] {
+        let link = folder.path().join(name);
+        std::os::unix::fs::symlink("/dev/zero", &link).unwrap();
+        assert!(matches!(open(&link, &TextOptions::default()), Err(ReadError::NotRegular { .. })), "{name}");
+    }
+    let pipe = folder.path().join("pipe.csv");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    assert!(matches!(open(&pipe, &TextOptions::default()), Err(ReadError::NotRegular { .. })));
 }

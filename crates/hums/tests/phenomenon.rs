@@ -339,3 +339,35 @@ fn extreme_modal_fit_inputs() {
     let y: Vec<f64> = three_modes().modes().iter().map(|m| m.value(0.0)).collect();
     assert!(max_difference(&y, &[0.4_f64.cos(), 0.6 * 1.2_f64.cos(), 0.25 * 2.9_f64.cos()]) < 1e-15);
 }
+
+/// The printed coefficient 17 of D 4.13e for the derivation's 14, on one half cycle: a half sine, whose moments are known.
+#[test]
+fn analytic_misprint_of_the_eighth_moment() {
+    let density = AmplitudeDensity::new(1.0, 0.25, 1).unwrap();
+    let found = density.indicators().unwrap();
+    // E[(sin - 2/pi)^8] / var^4, by Simpson's rule over half a turn.
+    let n = 2000;
+    let mean = 2.0 / std::f64::consts::PI;
+    let moment = |p: i32| -> f64 {
+        (0..=n)
+            .map(|k| {
+                let weight = if k == 0 || k == n {
+                    1.0
+                } else if k % 2 == 1 {
+                    4.0
+                } else {
+                    2.0
+                };
+                let theta = std::f64::consts::PI * f64::from(k) / f64::from(n);
+                weight * (theta.sin() - mean).powi(p)
+            })
+            .sum::<f64>()
+            / (3.0 * f64::from(n))
+    };
+    let variance = moment(2);
+    assert!((found.m8a / (moment(8) / variance.powi(4)) - 1.0).abs() < 1e-9);
+    assert!((found.m8a - 15.77).abs() < 0.005, "{}", found.m8a);
+    // 17 - 14 times mu^6 A_1^2 / n more.
+    let printed = found.m8a + 3.0 * mean.powi(6) / variance.powi(4);
+    assert!((printed - 2497.3).abs() < 0.05, "{printed}");
+}

@@ -147,3 +147,19 @@ fn extreme_positions_and_parameters() {
     let late = Shaft::from_pulses(&[50.0, 51.0], 1.0).unwrap();
     assert!(matches!(to_angle(&x, 1.0, &late, 64, Interpolation::Linear), Err(HumsError::Undefined { .. })));
 }
+
+/// Tones that a coarser grid carries keep their amplitude: the anti-aliasing filter has gain 1.
+#[test]
+fn analytic_coarser_grid_keeps_the_pass_band() {
+    for step in [1.5, 3.0, 7.3] {
+        for part in [0.0, 0.2, 0.6] {
+            // At a share of the Nyquist frequency of the new grid.
+            let omega = part * PI / step;
+            let x: Vec<f64> = (0..4000).map(|i| (omega * f64::from(i)).cos()).collect();
+            let at: Vec<f64> = (0..300).map(|k| 600.0 + step * f64::from(k)).collect();
+            let found = resample(&x, &at, Interpolation::default()).unwrap();
+            let expected: Vec<f64> = at.iter().map(|p| (omega * p).cos()).collect();
+            assert!(max_difference(&found, &expected) < 1e-5, "{step} {part}");
+        }
+    }
+}

@@ -32,7 +32,7 @@ fn peer_scipy_statistics() {
     close(basic::m6a(x).unwrap(), r["m6a"][0], TOLERANCE);
     close(basic::m8a(x).unwrap(), r["m8a"][0], TOLERANCE);
     close(basic::normalized_moment(x, 2.5).unwrap(), r["s_2.5"][0], TOLERANCE);
-    close(basic::energy_operator(x).unwrap(), r["energy_operator"][0], TOLERANCE);
+    close(basic::energy_operator(x, basic::Ends::Cyclic).unwrap(), r["energy_operator"][0], TOLERANCE);
     let moments = hums::moments::Moments::of(x).unwrap();
     close(moments.mean(), r["mean"][0], TOLERANCE);
     close(moments.variance().unwrap(), r["variance"][0], TOLERANCE);

@@ -186,3 +186,32 @@ fn invariant_time_increases_through_a_speed_jump() {
         last = t;
     }
 }
+
+/// Three seconds without pulses are a hole, not thirty turns; a few missing pulses are bridged.
+#[test]
+fn a_standstill_is_a_hole() {
+    let mut times = pulses(200, |k| 0.1 * k);
+    for t in &mut times[100..] {
+        *t += 3.0;
+    }
+    times.remove(50);
+    let kept = repair(&times).unwrap();
+    assert_eq!((kept.missing, kept.extra, kept.holes.len()), (1, 0, 1));
+    let shaft = Shaft::from_repaired(&kept, 1.0).unwrap();
+    let [from, to] = shaft.holes().next().unwrap();
+    close(from.1, 9.9, 1e-12);
+    close(to.1, 13.0, 1e-12);
+    let (slowest, fastest) = shaft.speed_range();
+    assert!(slowest > 9.9 && fastest < 10.1);
+    let stretch = kept.longest_stretch();
+    assert_eq!((stretch.times.len(), stretch.numbers[0], stretch.holes.len()), (100, 0, 0));
+    // Pulses that come at a tenth of the speed after the hole are not missing ones.
+    let mut slower = pulses(50, |k| 0.1 * k);
+    slower.extend(pulses(50, |k| 6.0 + k));
+    let kept = repair(&slower).unwrap();
+    assert_eq!((kept.missing, kept.holes.len()), (0, 1));
+    for holes in [vec![5, 5], vec![99], vec![98, 99]] {
+        let bad = hums::tachometer::RepairedPulses { holes, ..kept.clone() };
+        assert!(Shaft::from_repaired(&bad, 1.0).is_err());
+    }
+}

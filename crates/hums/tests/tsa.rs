@@ -181,3 +181,31 @@ fn peer_dissertation_figure_a5_repetition_every_nine_planet_passes() {
         }
     }
 }
+
+/// Periods that a standstill touches are left out, however long it is.
+#[test]
+fn standstills_are_not_averaged() {
+    let rate = 1000.0;
+    // Ten turns a second with an order 3, five seconds of rest with noise of another size, ten turns a second again.
+    let moving = |t: f64| (TAU * 3.0 * 10.0 * t).sin();
+    let x: Vec<f64> = (0..25_000)
+        .map(|i| {
+            let t = f64::from(i) / rate;
+            if t < 10.05 {
+                moving(t)
+            } else if t < 14.95 {
+                7.0
+            } else {
+                moving(t - 5.0)
+            }
+        })
+        .collect();
+    let mut times: Vec<f64> = (0..100).map(|k| 0.1 * f64::from(k)).collect();
+    times.extend((0..100).map(|k| 15.0 + 0.1 * f64::from(k)));
+    let shaft = Shaft::from_repaired(&hums::tachometer::repair(&times).unwrap(), 1.0).unwrap();
+    let found = average(&x, rate, &shaft, &TsaOptions::per_turn(128)).unwrap();
+    let expected: Vec<f64> = (0..128).map(|k| (TAU * 3.0 * f64::from(k) / 128.0).sin()).collect();
+    assert!(max_difference(&found.samples, &expected) < 1e-3);
+    // Whole turns that reach no farther than the margin of the interpolation to the rest.
+    assert!((190..=198).contains(&found.blocks), "{}", found.blocks);
+}

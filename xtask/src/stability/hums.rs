@@ -3,8 +3,9 @@
 use hums::difference::RemovalRule;
 use hums::envelope::envelope;
 use hums::indicator::{Entry, GearAnalyzer, SignalKind, signal_indicators};
+use hums::quality::ChannelQuality;
 use hums::resample::{Interpolation, to_angle};
-use hums::signal::{fill_gaps, inspect};
+use hums::signal::fill_gaps;
 use hums::spectrum::{Spectrum, Window};
 use hums::tachometer::{Shaft, repair};
 use hums::tsa::{TsaOptions, average};
@@ -59,7 +60,7 @@ pub fn cases() -> Table {
     table.answered("gap of two samples, filled", || {
         let mut signal = noise();
         (signal[300], signal[301]) = (f64::NAN, f64::INFINITY);
-        let found = inspect(&signal, 3).missing;
+        let found = ChannelQuality::of(&signal).gaps.samples;
         let filled = fill_gaps(&mut signal, 2)?;
         Ok(indicators(&signal)?.with(filled == found, "not all filled"))
     });

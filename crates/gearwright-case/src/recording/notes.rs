@@ -1,6 +1,6 @@
 //! Notes on a recording case: keys without effect.
 
-use super::resolve::{HealthyLimit, LimitSource, RecordingCase, TachometerSource};
+use super::resolve::{GaussianLimit, HealthyLimit, LimitSource, RecordingCase, TachometerSource};
 use crate::document::Node;
 use crate::notes::Notes;
 
@@ -25,14 +25,19 @@ pub(super) fn notes(case: &RecordingCase, document: &Node) -> Notes {
             idle("tachometer", &keys, "the speed is constant: there are no pulses");
         }
     }
-    if case.inputs.difference.sideband_pairs == 0 {
-        idle("difference", &["sideband_spacing"], "no sidebands are removed (sideband_pairs = 0)");
+    if case.inputs.difference.sideband_pairs == 0 && case.inputs.difference.shaft_orders == 0 {
+        idle("difference", &["sideband_spacing"], "neither sidebands nor shaft orders are removed");
     }
-    if matches!(case.limits, LimitSource::Healthy(_, HealthyLimit::Quantile(_))) {
-        idle("thresholds", &["sigmas"], "the method is \"quantile\"");
-    } else {
-        idle("thresholds", &["quantile"], "the method is not \"quantile\"");
-    }
+    let used = match case.limits {
+        LimitSource::Gaussian(GaussianLimit::FalseAlarms(_))
+        | LimitSource::Healthy(_, HealthyLimit::FalseAlarms(_)) => "false_alarm_rate",
+        LimitSource::Gaussian(GaussianLimit::Sigmas(_)) | LimitSource::Healthy(_, HealthyLimit::MeanPlusSigmas(_)) => {
+            "sigmas"
+        }
+        LimitSource::Healthy(_, HealthyLimit::Quantile(_)) => "quantile",
+    };
+    let unused = ["false_alarm_rate", "sigmas", "quantile"].into_iter().filter(|key| *key != used);
+    idle("thresholds", &unused.collect::<Vec<_>>(), &format!("limits are made from thresholds.{used}"));
     if case.signal.is_file()
         || ending.is_some_and(|ending| hums::io::is_recording(std::path::Path::new(&format!("x.{ending}"))))
     {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use hums::difference::{RemovalRule, whole_mesh_order};
 use hums::io::text::TextOptions;
+use hums::quality::Flaw;
 use hums::resample::Interpolation;
 use hums::tachometer::{Edge, PulseOptions};
 
@@ -34,6 +35,8 @@ pub struct RecordingCase {
     pub interpolation: Interpolation,
     /// Regular orders (cycles per period); the first mesh order is the gear's.
     pub rule: RemovalRule,
+    /// Flaws that do not keep channels from being judged.
+    pub accepted: Vec<Flaw>,
     /// Where thresholds come from.
     pub limits: LimitSource,
     /// How indicators with a memory keep it.
@@ -90,7 +93,7 @@ pub enum TachometerSource {
 #[derive(Debug, Clone, PartialEq)]
 pub enum LimitSource {
     /// Values for Gaussian noise.
-    Gaussian,
+    Gaussian(GaussianLimit),
     /// A healthy set.
     Healthy(HealthySet, HealthyLimit),
 }
@@ -104,9 +107,20 @@ pub enum HealthySet {
     First(usize),
 }
 
+/// How values for Gaussian noise become limits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum GaussianLimit {
+    /// Probability of any alarm on a healthy recording.
+    FalseAlarms(f64),
+    /// Standard errors, each indicator on its own.
+    Sigmas(f64),
+}
+
 /// What a healthy set says.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum HealthyLimit {
+    /// Prediction limits: probability of any alarm on a healthy recording.
+    FalseAlarms(f64),
     /// Mean and so many standard deviations.
     MeanPlusSigmas(f64),
     /// Quantile.
@@ -127,6 +141,7 @@ pub fn resolve(mut inputs: Recording, document: &Node, folder: &Path) -> Result<
     let tachometer = tachometer(&inputs.tachometer, document, folder, &mut faults);
     let rule = rule(&inputs, spacing, document, &mut faults);
     let limits = limits(&mut inputs.thresholds, document, folder, &mut faults);
+    let accepted = accepted(&inputs.quality.accept, document, &mut faults);
     if let Some(angle) = inputs.signal.angles_deg.iter().find(|angle| !(angle.abs() <= 3600.0)) {
         faults.push(document.fault("signal.angles_deg", format!("{angle}: must be within -3600 and 3600")));
     }
@@ -163,6 +178,7 @@ pub fn resolve(mut inputs: Recording, document: &Node, folder: &Path) -> Result<
             schema::Interpolation::Linear => Interpolation::Linear,
         },
         rule,
+        accepted,
         limits,
         memory,
         detection,
@@ -173,8 +189,28 @@ pub fn resolve(mut inputs: Recording, document: &Node, folder: &Path) -> Result<
     Ok(case)
 }
 
+/// Defaults of `thresholds.false_alarm_rate`, `sigmas` and `quantile`.
+const FALSE_ALARM_RATE: f64 = 0.01;
+const SIGMAS: f64 = 3.0;
+const QUANTILE: f64 = 0.99;
+
 fn names(list: &str) -> Vec<String> {
     list.split(',').map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).collect()
+}
+
+/// Flaws named in `quality.accept`.
+fn accepted(list: &str, document: &Node, faults: &mut Vec<Fault>) -> Vec<Flaw> {
+    let mut found = Vec::new();
+    for name in names(list) {
+        match Flaw::ALL.iter().find(|flaw| flaw.name() == name) {
+            Some(flaw) => found.push(*flaw),
+            None => {
+                let known = Flaw::ALL.map(|flaw| flaw.name()).join(", ");
+                faults.push(document.fault("quality.accept", format!("there is no flaw \"{name}\"; known: {known}")));
+            }
+        }
+    }
+    found
 }
 
 fn memory(written: &schema::Memory) -> MemoryPlan {
@@ -300,12 +336,20 @@ fn limits(
         (None, Some(count)) => Some(HealthySet::First(count as usize)),
         (None, None) => None,
     };
-    let natural = if set.is_some() { Method::MeanPlusSigmas } else { Method::Gaussian };
+    let natural = match (&set, written.sigmas, written.quantile) {
+        (None, ..) => Method::Gaussian,
+        (Some(_), Some(_), _) => Method::MeanPlusSigmas,
+        (Some(_), None, Some(_)) => Method::Quantile,
+        (Some(_), None, None) => Method::Prediction,
+    };
     let method = *written.method.get_or_insert(natural);
     let source = match (method, set) {
-        (Method::Gaussian, None) => LimitSource::Gaussian,
+        (Method::Gaussian, None) => LimitSource::Gaussian(match written.sigmas {
+            Some(sigmas) => GaussianLimit::Sigmas(sigmas),
+            None => GaussianLimit::FalseAlarms(*written.false_alarm_rate.get_or_insert(FALSE_ALARM_RATE)),
+        }),
         (Method::Gaussian, Some(_)) => {
-            let message = "the method \"gaussian\" needs no healthy set; choose \"mean-plus-sigmas\" or \"quantile\"";
+            let message = "the method \"gaussian\" needs no healthy set; choose \"prediction\", \"mean-plus-sigmas\" or \"quantile\"";
             faults.push(document.fault("thresholds.method", message));
             return None;
         }
@@ -314,8 +358,16 @@ fn limits(
             faults.push(document.fault("thresholds.method", message));
             return None;
         }
-        (Method::MeanPlusSigmas, Some(set)) => LimitSource::Healthy(set, HealthyLimit::MeanPlusSigmas(written.sigmas)),
-        (Method::Quantile, Some(set)) => LimitSource::Healthy(set, HealthyLimit::Quantile(written.quantile)),
+        (Method::Prediction, Some(set)) => {
+            let rate = *written.false_alarm_rate.get_or_insert(FALSE_ALARM_RATE);
+            LimitSource::Healthy(set, HealthyLimit::FalseAlarms(rate))
+        }
+        (Method::MeanPlusSigmas, Some(set)) => {
+            LimitSource::Healthy(set, HealthyLimit::MeanPlusSigmas(*written.sigmas.get_or_insert(SIGMAS)))
+        }
+        (Method::Quantile, Some(set)) => {
+            LimitSource::Healthy(set, HealthyLimit::Quantile(*written.quantile.get_or_insert(QUANTILE)))
+        }
     };
     (faults.len() == before).then_some(source)
 }

@@ -27,6 +27,9 @@ pub struct Recording {
     /// Which orders count as regular: mesh harmonics leave the residual signal, sidebands the difference signal as well.
     #[serde(default)]
     pub difference: Difference,
+    /// Which flaws of a recording do not keep it from being judged.
+    #[serde(default)]
+    pub quality: Quality,
     /// When a value is a reason to look.
     #[serde(default)]
     pub thresholds: Thresholds,
@@ -63,11 +66,13 @@ pub struct Signal {
     /// Where the sensors sit about the housing (degrees), a number for each channel judged, in their order: gives polar maps of indicators.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub angles_deg: Vec<f64>,
-    /// Sampling rate (Hz); default: what the file states, or the step of its time column.
+    /// Sampling rate (Hz); default: what the file states, or the step of its time column. One that contradicts them by more than 0.1 % is a
+    /// "rate-conflict": nothing is judged.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1e-6, max = 1e12))]
     pub rate_hz: Option<f64>,
-    /// Channel that holds the time (s), by name or number; default: a channel named "time" or "t".
+    /// Channel that holds the time, by name or number; default: a channel named "time" or "t". Its unit is s unless its name ends in "ms" or "us". Rows
+    /// missing from it are gaps of all channels.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_channel: Option<String>,
     /// Unit of the channels, for headings and columns, e.g. "g".
@@ -221,7 +226,8 @@ pub enum Interpolation {
     Linear,
 }
 
-/// Regular orders.
+/// Regular orders. The defaults are the convention of most publications: mesh harmonics with their first sidebands, the
+/// shaft's orders 1 and 2, and the mean.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Difference {
@@ -236,7 +242,7 @@ pub struct Difference {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 1, max = 100000))]
     pub harmonics: Option<u32>,
-    /// Shaft orders, from 1 (cycle per period) on, that count as regular; 2 is usual in helicopter monitoring.
+    /// Shaft orders, 1 to this number (multiples of `sideband_spacing`), that count as regular.
     #[schemars(range(min = 0, max = 100000))]
     pub shaft_orders: u32,
     /// Whether the mean is regular, too.
@@ -245,36 +251,54 @@ pub struct Difference {
 
 impl Default for Difference {
     fn default() -> Self {
-        Self { sideband_pairs: 1, sideband_spacing: None, harmonics: None, shaft_orders: 0, remove_mean: false }
+        Self { sideband_pairs: 1, sideband_spacing: None, harmonics: None, shaft_orders: 2, remove_mean: true }
     }
+}
+
+/// Which flaws of a recording do not keep it from being judged.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Quality {
+    /// Flaws, separated by commas, that are reported but do not keep channels from being judged: "clipped", "saturated", "dropout", "drift", "gap",
+    /// "dead", "rate-conflict", "standstill", "time-column". Without, a channel with one of them in a harmful measure is "not judged".
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub accept: String,
 }
 
 /// When a value is a reason to look.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Thresholds {
-    /// "gaussian": the value for Gaussian noise and `sigmas` standard errors more, on residual and difference signals; "mean-plus-sigmas":
-    /// mean and `sigmas` standard deviations of a healthy set; "quantile": of a healthy set. Default: "mean-plus-sigmas" with a healthy set,
-    /// "gaussian" without.
+    /// "prediction": limits that a further healthy recording passes with at most the probability `false_alarm_rate`, all channels and indicators
+    /// together; "mean-plus-sigmas": mean and `sigmas` standard deviations of a healthy set to either side; "quantile": the middle share
+    /// `quantile` of a healthy set; "gaussian": values for Gaussian noise, on residual and difference signals only. Default: with a healthy set
+    /// "prediction" (or the method whose key is given), without "gaussian".
     #[serde(skip_serializing_if = "Option::is_none")]
     pub method: Option<Method>,
+    /// Probability that a healthy recording raises any alarm, for the methods "prediction" and "gaussian"; default 0.01.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1e-9, max = 0.5))]
+    pub false_alarm_rate: Option<f64>,
     /// Folder of recordings of the healthy state, made like the signal.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub healthy: Option<String>,
-    /// Of a folder of recordings, so many of the first are the healthy set.
+    /// Number of recordings, from the first of the folder on, that are the healthy set.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 2, max = 1000000))]
     pub healthy_first: Option<u32>,
-    /// Standard errors or deviations above the mean.
+    /// Standard deviations from the mean of a healthy set, or standard errors from the value for Gaussian noise: a limit for each indicator on its
+    /// own, without regard to their number. Default for the method "mean-plus-sigmas": 3.
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 100.0))]
-    pub sigmas: f64,
-    /// Share of healthy values below the threshold of the method "quantile".
+    pub sigmas: Option<f64>,
+    /// Share of healthy values between the limits of the method "quantile"; default 0.99.
+    #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(range(min = 0.0, max = 1.0))]
-    pub quantile: f64,
-    /// In a trend, an alarm needs so many values above their threshold ...
+    pub quantile: Option<f64>,
+    /// In a trend, an alarm needs this number of values outside their limits ...
     #[schemars(range(min = 1, max = 1000000))]
     pub alarm_hits: u32,
-    /// ... among the last so many recordings that have a value.
+    /// ... among this number of the last recordings that have a value.
     #[schemars(range(min = 1, max = 1000000))]
     pub alarm_window: u32,
 }
@@ -283,10 +307,11 @@ impl Default for Thresholds {
     fn default() -> Self {
         Self {
             method: None,
+            false_alarm_rate: None,
             healthy: None,
             healthy_first: None,
-            sigmas: 3.0,
-            quantile: 0.99,
+            sigmas: None,
+            quantile: None,
             alarm_hits: 1,
             alarm_window: 1,
         }
@@ -299,6 +324,8 @@ impl Default for Thresholds {
 pub enum Method {
     /// Values for Gaussian noise.
     Gaussian,
+    /// Prediction interval of a healthy set.
+    Prediction,
     /// Mean and standard deviation of a healthy set.
     MeanPlusSigmas,
     /// Quantile of a healthy set.

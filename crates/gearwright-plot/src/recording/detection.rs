@@ -1,10 +1,10 @@
-//! Receiver operating characteristics, and probability of detection over severity (its intervals are in the table).
+//! Receiver operating characteristics, and probability of detection over severity with 95 % intervals.
 
 use crate::{COLOURS, Line, MarkedChart, Pattern};
 use gearwright_case::RecordingCase;
 use gearwright_results::recording::{Detected, Outcome};
 
-use super::{CHANNELS, TRENDS, chart, heading};
+use super::{CHANNELS, chart, heading};
 
 /// Figures for each channel.
 pub fn charts(case: &RecordingCase, outcome: &Outcome) -> Vec<(String, MarkedChart)> {
@@ -18,11 +18,10 @@ pub fn charts(case: &RecordingCase, outcome: &Outcome) -> Vec<(String, MarkedCha
     let mut charts = Vec::new();
     for (index, channel) in channels.iter().take(CHANNELS).enumerate() {
         let name = |what: &str| if channels.len() > 1 { format!("{what}_{}", index + 1) } else { what.to_owned() };
-        let of = |(indicator, signal): &(&str, &str)| {
-            let same = |d: &&Detected| d.channel == *channel && d.indicator == *indicator && d.signal == *signal;
-            detection.detected.iter().find(same)
-        };
-        let shown: Vec<&Detected> = TRENDS.iter().filter_map(of).collect();
+        // Those that separate best; of equal ones, the first of the tables.
+        let mut shown: Vec<&Detected> = detection.detected.iter().filter(|d| d.channel == *channel).collect();
+        shown.sort_by(|a, b| b.roc.area.total_cmp(&a.roc.area));
+        shown.truncate(BEST);
         charts.push((name("roc"), roc(case, channel, &shown)));
         for (number, condition) in conditions(&shown).into_iter().enumerate() {
             let what = match (condition, number) {
@@ -34,6 +33,9 @@ pub fn charts(case: &RecordingCase, outcome: &Outcome) -> Vec<(String, MarkedCha
     }
     charts
 }
+
+/// Indicators in a figure: the best by area under the receiver operating characteristic.
+const BEST: usize = 8;
 
 /// Conditions with more than one severity, in their order.
 fn conditions<'a>(shown: &[&'a Detected]) -> Vec<&'a str> {
@@ -79,15 +81,19 @@ fn over_severity(case: &RecordingCase, channel: &str, condition: &str, shown: &[
         let here = detected.by_severity.iter().filter(|(severity, _)| severity.condition == condition);
         here.map(|(severity, rate)| (severity.value, rate.value())).collect()
     };
-    let lines: Vec<Line> = shown
-        .iter()
-        .filter(|detected| !under(detected).is_empty())
-        .enumerate()
-        .map(|(index, detected)| line(named(detected, ""), index, under(detected)))
-        .collect();
+    let drawn: Vec<&&Detected> = shown.iter().filter(|detected| !under(detected).is_empty()).collect();
+    let mut lines: Vec<Line> =
+        drawn.iter().enumerate().map(|(index, detected)| line(named(detected, ""), index, under(detected))).collect();
+    // Intervals of the best one: those of all would hide each other.
+    if let Some(best) = drawn.first() {
+        for (severity, rate) in best.by_severity.iter().filter(|(severity, _)| severity.condition == condition) {
+            let points = vec![(severity.value, rate.low), (severity.value, rate.high)];
+            lines.push(Line { name: String::new(), points, pattern: Pattern::Solid, colour: COLOURS[0] });
+        }
+    }
     let at = if condition.is_empty() { String::new() } else { format!(", condition {condition}") };
     let title = heading(case, &format!("probability of detection of {channel}{at}"));
-    let mut chart = chart(title, "Severity", "Share above the threshold".into(), lines);
+    let mut chart = chart(title, "Severity", "Share outside the limits".into(), lines);
     chart.from_zero = true;
     MarkedChart { chart, marks: Vec::new(), bands: Vec::new(), x_range: None, y_up_to: Some(1.0) }
 }

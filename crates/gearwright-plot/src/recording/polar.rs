@@ -53,7 +53,7 @@ fn map(
     let limit = |channel: &str| {
         let rows = &shown.channels.iter().find(|c| c.name == channel)?.rows;
         let row = rows.iter().find(|row| row.indicator == indicator && row.signal == signal)?;
-        Some(outcome.limits.of(channel, row)?.threshold)
+        outcome.limits.of(channel, row)?.limit.upper
     };
     lines.push(line("threshold".into(), polar::rounded(closed(&limit)), COLOURS[4]));
     let quantity = polar::Quantity {

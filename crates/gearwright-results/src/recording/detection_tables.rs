@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use hums::detectability::HitMiss;
 use hums::threshold::Rate;
 
 use super::Detected;
@@ -26,14 +27,18 @@ fn rate(rate: Option<Rate>) -> [String; 3] {
 pub fn rates(path: &Path, all: &[Detected]) -> Result<(), csv::Error> {
     let mut table = csv::Writer::from_path(path)?;
     let columns = [
-        "threshold",
+        "lower_limit",
+        "upper_limit",
         "false_alarm_rate",
         "false_alarm_rate_low",
         "false_alarm_rate_high",
         "detection_rate",
         "detection_rate_low",
         "detection_rate_high",
+        "rises_with_damage",
         "area_under_roc",
+        "area_under_roc_low",
+        "area_under_roc_high",
         "best_threshold",
         "best_false_alarm_rate",
         "best_detection_rate",
@@ -41,13 +46,16 @@ pub fn rates(path: &Path, all: &[Detected]) -> Result<(), csv::Error> {
     table.write_record(NAME.iter().chain(&columns))?;
     for detected in all {
         let mut record = name(detected).to_vec();
-        record.push(optional(detected.limit.map(|limit| limit.threshold)));
-        record.extend(rate(detected.limit.and_then(|limit| limit.false_alarms)));
+        let limit = detected.bound.map(|bound| bound.limit);
+        record.extend([limit.and_then(|l| l.lower), limit.and_then(|l| l.upper)].map(optional));
+        record.extend(rate(detected.bound.and_then(|bound| bound.false_alarms)));
         record.extend(rate(detected.detection));
+        record.push(if detected.roc.rises { "yes" } else { "no" }.to_owned());
+        let (low, high) = detected.roc.area_interval();
+        record.extend([detected.roc.area, low, high].map(number));
         let best = detected.best;
         // Infinite: no threshold keeps false alarms that low.
         record.push(optional(Some(best.threshold).filter(|t| t.is_finite())));
-        record.insert(record.len() - 1, number(detected.roc.area));
         record.extend([best.false_alarm_rate, best.detection_rate].map(number));
         table.write_record(record)?;
     }
@@ -74,7 +82,7 @@ pub fn roc(path: &Path, all: &[Detected]) -> Result<(), csv::Error> {
     Ok(())
 }
 
-/// `detection_over_severity.csv`: share of recordings above the threshold for each condition and severity.
+/// `detection_over_severity.csv`: share of recordings outside the limits for each condition and severity.
 ///
 /// # Errors
 /// I/O errors.
@@ -83,9 +91,10 @@ pub fn severities(path: &Path, all: &[Detected]) -> Result<(), csv::Error> {
     let columns = [
         "condition",
         "severity",
-        "threshold",
+        "lower_limit",
+        "upper_limit",
         "recordings",
-        "above",
+        "outside",
         "detection_rate",
         "detection_rate_low",
         "detection_rate_high",
@@ -95,9 +104,44 @@ pub fn severities(path: &Path, all: &[Detected]) -> Result<(), csv::Error> {
         for (severity, found) in &detected.by_severity {
             let mut record = name(detected).to_vec();
             record.push(severity.condition.clone());
-            record.extend([number(severity.value), optional(detected.limit.map(|limit| limit.threshold))]);
+            let limit = detected.bound.map(|bound| bound.limit);
+            record.push(number(severity.value));
+            record.extend([limit.and_then(|l| l.lower), limit.and_then(|l| l.upper)].map(optional));
             record.extend([found.cases, found.hits].map(|count| count.to_string()));
             record.extend(rate(Some(*found)));
+            table.write_record(record)?;
+        }
+    }
+    table.flush()?;
+    Ok(())
+}
+
+/// `pod.csv`: logistic probability of detection over severity, for each condition: severities detected with probability 0.5 and 0.9, and a_90/95.
+///
+/// # Errors
+/// I/O errors.
+pub fn pod(path: &Path, all: &[Detected]) -> Result<(), csv::Error> {
+    let mut table = csv::Writer::from_path(path)?;
+    let columns = ["condition", "recordings", "detected", "intercept", "slope", "a50", "a90", "a90_95", "reason"];
+    table.write_record(NAME.iter().chain(&columns))?;
+    for detected in all {
+        for pod in &detected.pod {
+            let mut record = name(detected).to_vec();
+            record.push(pod.condition.clone());
+            record.extend([pod.recordings, pod.detected].map(|count| count.to_string()));
+            let fit = pod.fit.as_ref();
+            let numbers = |fit: &HitMiss| {
+                let sizes = [0.5, 0.9].map(|p| Some(fit.size_detected(p)));
+                let with_confidence = fit.size_detected_with_confidence(0.9);
+                [Some(fit.intercept), Some(fit.slope), sizes[0], sizes[1], with_confidence].map(optional)
+            };
+            record.extend(fit.map_or_else(|_| Default::default(), numbers));
+            let few = || "too few data for 90 % at 95 % confidence at any severity".to_owned();
+            record.push(match fit {
+                Ok(fit) if fit.size_detected_with_confidence(0.9).is_some() => String::new(),
+                Ok(_) => few(),
+                Err(reason) => reason.clone(),
+            });
             table.write_record(record)?;
         }
     }

@@ -1,6 +1,8 @@
 //! What a recording says: indicators of its channels, their averages.
 
+use hums::indicator::Indicator;
 use hums::moments::Moments;
+use hums::quality::Finding;
 
 /// What a recording says.
 #[derive(Debug, Clone)]
@@ -15,6 +17,8 @@ pub struct Measured {
     pub speed: (f64, f64),
     /// Tachometer pulses.
     pub pulses: Option<Pulses>,
+    /// What is odd about the recording as a whole.
+    pub findings: Vec<Finding>,
     /// Channels judged.
     pub channels: Vec<Channel>,
 }
@@ -36,6 +40,10 @@ pub struct Channel {
     pub name: String,
     /// Samples missing in it (NaN).
     pub missing: usize,
+    /// What is odd about it.
+    pub findings: Vec<Finding>,
+    /// Why it must not be judged.
+    pub blocked: Option<String>,
     /// Indicators.
     pub rows: Vec<Row>,
     /// Its synchronous average, or why there is none.
@@ -83,7 +91,25 @@ pub struct Detail {
     pub signals: [Vec<f64>; 3],
     /// Amplitudes of the average at orders 0, 1, .. (cycles per period).
     pub amplitudes: Vec<f64>,
+    /// What other difference signals of the same average say.
+    pub conventions: Vec<Convention>,
 }
+
+/// FM4, M6A and M8A of a difference signal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Convention {
+    /// Sideband pairs removed.
+    pub sideband_pairs: usize,
+    /// Shaft orders removed.
+    pub shaft_orders: usize,
+    /// Whether these are the case's.
+    pub chosen: bool,
+    /// The indicators, or why there are none.
+    pub values: [Result<f64, String>; 3],
+}
+
+/// Indicators of a [`Convention`].
+pub const OF_CONVENTION: [Indicator; 3] = [Indicator::Fm4, Indicator::M6a, Indicator::M8a];
 
 /// Pulses of a tachometer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]

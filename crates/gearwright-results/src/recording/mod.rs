@@ -8,10 +8,11 @@ pub mod tables;
 
 use std::cmp::Ordering;
 
+use hums::detectability::HitMiss;
 use hums::threshold::{Rate, Roc, RocPoint};
 
-pub use judge::{Limit, Limits, Verdict};
-pub use measured::{Averaged, Channel, Detail, Measured, Pulses, Row};
+pub use judge::{Bound, ChannelVerdict, HealthIndex, Limits, Verdict};
+pub use measured::{Averaged, Channel, Convention, Detail, Measured, OF_CONVENTION, Pulses, Row};
 
 /// Everything a run finds.
 #[derive(Debug)]
@@ -58,18 +59,20 @@ pub struct Alarm {
     pub indicator: &'static str,
     /// Signal it is computed from.
     pub signal: &'static str,
-    /// Its threshold.
-    pub threshold: f64,
+    /// Its limits; none where there is none to that side.
+    pub lower_limit: Option<f64>,
+    /// See `lower_limit`.
+    pub upper_limit: Option<f64>,
     /// Number of the recording (from 1) that raised it, and its name.
     pub raised_at: usize,
     /// Its name.
     pub raised_by: String,
     /// Number of the first recording without alarm; none if it still stands.
     pub cleared_at: Option<usize>,
-    /// Largest value meanwhile.
-    pub largest: f64,
-    /// Share of all recordings above the threshold.
-    pub share_above: f64,
+    /// Value that deviates most meanwhile.
+    pub extreme: f64,
+    /// Share of all recordings outside the limits.
+    pub share_outside: f64,
 }
 
 /// Value of an indicator in a recording.
@@ -90,16 +93,31 @@ pub struct Detected {
     pub indicator: &'static str,
     /// Signal it is computed from.
     pub signal: &'static str,
-    /// Its threshold, with the rate of false alarms.
-    pub limit: Option<Limit>,
-    /// Share of the damaged set above the threshold.
+    /// Its limits, with the rate of false alarms.
+    pub bound: Option<Bound>,
+    /// Share of the damaged set outside the limits.
     pub detection: Option<Rate>,
     /// All thresholds.
     pub roc: Roc,
     /// The threshold that detects most with at most [`FALSE_ALARMS`] of the healthy set above it.
     pub best: RocPoint,
-    /// Share above the threshold for each condition and severity, rising.
+    /// Share outside the limits for each condition and severity, rising.
     pub by_severity: Vec<(Severity, Rate)>,
+    /// Probability of detection over severity, for each condition.
+    pub pod: Vec<Pod>,
+}
+
+/// Probability of detection over severity under one condition.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pod {
+    /// The condition.
+    pub condition: String,
+    /// Recordings, and those outside the limits.
+    pub recordings: usize,
+    /// See `recordings`.
+    pub detected: usize,
+    /// The fit, or why there is none.
+    pub fit: Result<HitMiss, String>,
 }
 
 /// What the table of severities says of a recording.

@@ -4,8 +4,11 @@ use std::fmt::Write as _;
 
 use serde_json::{Map, Value as Json, json};
 
-use super::{Channel, Measured, Outcome, Verdict};
 use gearwright_case::RecordingCase;
+use hums::quality::Finding;
+use hums::threshold::{Limit, Rate};
+
+use super::{Channel, Measured, Outcome, Verdict};
 
 /// `summary.json`: inputs with all defaults, recordings, indicators of the last one, alarms.
 #[must_use]
@@ -30,6 +33,13 @@ pub fn summary(case: &RecordingCase, outcome: &Outcome, seconds: f64) -> Json {
         "assumptions": case.notes.assumptions,
         "period_turns": case.period_turns,
         "mesh_order": case.rule.mesh_orders.first(),
+        "difference_signal": convention(case),
+        "limits": {
+            "indicators_judged_together": outcome.limits.tests(),
+            "announced_false_alarm_rate": outcome.limits.false_alarm_rate,
+            "held_out_false_alarms": outcome.limits.held_out.map(rate),
+        },
+        "health_index": outcome.shown().and_then(|measured| outcome.limits.health_index(measured)),
         "healthy_recordings": outcome.healthy,
         "recordings": recordings,
         "shown": outcome.entries.get(outcome.shown).map(|entry| &entry.name),
@@ -38,6 +48,35 @@ pub fn summary(case: &RecordingCase, outcome: &Outcome, seconds: f64) -> Json {
         "damaged_recordings": outcome.detection.as_ref().map(|detection| detection.damaged),
         "time_s": seconds,
     })
+}
+
+fn rate(rate: Rate) -> Json {
+    json!({ "hits": rate.hits, "cases": rate.cases, "low": rate.low, "high": rate.high })
+}
+
+/// What the difference signal lacks, in words.
+#[must_use]
+pub fn convention(case: &RecordingCase) -> String {
+    let rule = &case.rule;
+    let harmonics = match case.inputs.difference.harmonics {
+        Some(count) => format!("{count} mesh harmonics"),
+        None => "mesh harmonics".to_owned(),
+    };
+    let pairs = match rule.sideband_pairs {
+        1 => "1 sideband pair".to_owned(),
+        pairs => format!("{pairs} sideband pairs"),
+    };
+    let shaft = match rule.shaft_orders {
+        0 => String::new(),
+        1 => ", shaft order 1".to_owned(),
+        orders => format!(", shaft orders 1 to {orders}"),
+    };
+    format!("without {harmonics}, {pairs} about each{shaft}{}", if rule.remove_mean { ", mean" } else { "" })
+}
+
+fn findings(list: &[Finding]) -> Json {
+    let one = |f: &Finding| json!({ "flaw": f.flaw.name(), "keeps_from_judging": f.blocks, "detail": f.detail });
+    list.iter().map(one).collect()
 }
 
 fn recording(measured: &Measured) -> Json {
@@ -49,6 +88,7 @@ fn recording(measured: &Measured) -> Json {
         "slowest_hz": measured.speed.0,
         "fastest_hz": measured.speed.1,
         "pulses": measured.pulses,
+        "quality": findings(&measured.findings),
     })
 }
 
@@ -71,22 +111,38 @@ fn channel(channel: &Channel, outcome: &Outcome) -> Json {
         Err(reason) => json!({ "none": reason }),
     };
     let alarms: Vec<Json> = alarmed(channel, outcome)
-        .map(|(indicator, signal, value, threshold)| {
-            json!({ "indicator": indicator, "signal": signal, "value": value, "threshold": threshold })
+        .map(|(indicator, signal, value, limit)| {
+            json!({
+                "indicator": indicator,
+                "signal": signal,
+                "value": value,
+                "lower_limit": limit.lower,
+                "upper_limit": limit.upper,
+            })
         })
         .collect();
-    json!({ "missing": channel.missing, "average": average, "indicators": signals, "above_threshold": alarms })
+    let judged = outcome.limits.on_channel(channel);
+    json!({
+        "verdict": judged.verdict.name(),
+        "not_judged_because": judged.verdict.reason(),
+        "indicators_judged": judged.judged,
+        "quality": findings(&channel.findings),
+        "missing": channel.missing,
+        "average": average,
+        "indicators": signals,
+        "outside_limits": alarms,
+    })
 }
 
-/// Indicator, signal, value and threshold of what is above it.
+/// Indicator, signal, value and limits of what is outside them.
 fn alarmed<'a>(
     channel: &'a Channel,
     outcome: &'a Outcome,
-) -> impl Iterator<Item = (&'static str, &'static str, f64, f64)> + 'a {
+) -> impl Iterator<Item = (&'static str, &'static str, f64, Limit)> + 'a {
     channel.rows.iter().filter_map(|row| {
-        let verdict = outcome.limits.verdict(&channel.name, row)?;
-        let limit = outcome.limits.of(&channel.name, row)?;
-        (verdict == Verdict::Alarm).then_some((row.indicator, row.signal, *row.value.as_ref().ok()?, limit.threshold))
+        let verdict = outcome.limits.verdict(channel, row);
+        let bound = outcome.limits.of(&channel.name, row)?;
+        (verdict == Verdict::Alarm).then_some((row.indicator, row.signal, *row.value.as_ref().ok()?, bound.limit))
     })
 }
 
@@ -157,15 +213,68 @@ pub fn screen(case: &RecordingCase, outcome: &Outcome) -> String {
             let value = row.and_then(|row| row.value.as_ref().ok());
             let _ = write!(text, " {:>10}", value.map_or("-".into(), |v| short(*v)));
         }
-        let count = alarmed(channel, outcome).count();
-        let gaps = if channel.missing > 0 { format!(", {} samples missing", channel.missing) } else { String::new() };
-        let _ = writeln!(text, "  {}{gaps}", if count > 0 { format!("{count} above") } else { "ok".into() });
+        let judged = outcome.limits.on_channel(channel);
+        let _ = match &judged.verdict {
+            Verdict::NotJudged(reason) => writeln!(text, "  not judged: {}", cut(reason)),
+            verdict => writeln!(text, "  {} ({} of {} judged)", verdict.name(), judged.judged, channel.rows.len()),
+        };
     }
     if shown.channels.len() > LINES {
         let _ = writeln!(text, "and {} more channels in indicators.csv", shown.channels.len() - LINES);
     }
+    text.push_str(&quality_lines(shown));
+    text.push_str(&judged_lines(case, outcome, shown));
     text.push_str(&alarm_lines(outcome, shown));
     text.push_str(&detection_lines(outcome));
+    text
+}
+
+/// Flaws on the screen.
+const FLAWS: usize = 3;
+/// Characters of a reason on the screen.
+const REASON: usize = 100;
+
+fn cut(reason: &str) -> String {
+    let cut: String = reason.chars().take(REASON).collect();
+    if cut.len() < reason.len() { format!("{cut} ..") } else { cut }
+}
+
+/// Flaws of the recording and its channels, those that keep from judging first.
+fn quality_lines(shown: &Measured) -> String {
+    let whole = shown.findings.iter().map(|finding| ("recording", finding));
+    let channels = shown.channels.iter().flat_map(|c| c.findings.iter().map(move |finding| (&c.name[..], finding)));
+    let mut all: Vec<(&str, &Finding)> = whole.chain(channels).collect();
+    all.sort_by_key(|(_, finding)| !finding.blocks);
+    let mut text = String::new();
+    for (name, finding) in all.iter().take(FLAWS) {
+        let _ = writeln!(text, "quality    {name}: {}: {}", finding.flaw.name(), cut(&finding.detail));
+    }
+    if all.len() > FLAWS {
+        let _ = writeln!(text, "           and {} more in quality.csv", all.len() - FLAWS);
+    }
+    text
+}
+
+/// Which difference signal, and the health index with its rate of false alarms.
+fn judged_lines(case: &RecordingCase, outcome: &Outcome, shown: &Measured) -> String {
+    let mut text = format!("difference {}\n", convention(case));
+    text.push_str(&conventions_line(shown));
+    let Some(index) = outcome.limits.health_index(shown) else { return text };
+    let _ = write!(
+        text,
+        "health     index {} (1 is the limit), by {} {} ({})",
+        short(index.value),
+        index.channel,
+        index.indicator,
+        index.signal
+    );
+    if let Some(rate) = outcome.limits.false_alarm_rate {
+        let _ = write!(text, "; false alarms {rate} a recording, {} indicators together", outcome.limits.tests());
+    }
+    if let Some(rate) = outcome.limits.held_out {
+        let _ = write!(text, "; held out {} of {}", rate.hits, rate.cases);
+    }
+    text.push('\n');
     text
 }
 
@@ -179,22 +288,23 @@ fn detection_lines(outcome: &Outcome) -> String {
         detection.damaged, outcome.healthy
     );
     for detected in best.iter().take(BEST) {
-        let share = |rate: Option<hums::threshold::Rate>| rate.map_or("-".into(), |r| format!("{:.3}", r.value()));
+        let share = |rate: Option<Rate>| rate.map_or("-".into(), |r| format!("{:.3}", r.value()));
+        let (low, high) = detected.roc.area_interval();
         let _ = writeln!(
             text,
-            "  {} {} ({}): area {:.3}; above the threshold {} of damaged, {} of healthy",
+            "  {} {} ({}): area {:.3} ({low:.3} to {high:.3}); outside {} of damaged, {} of healthy (held out)",
             detected.channel,
             detected.indicator,
             detected.signal,
             detected.roc.area,
             share(detected.detection),
-            share(detected.limit.and_then(|limit| limit.false_alarms))
+            share(detected.bound.and_then(|bound| bound.false_alarms))
         );
     }
     text
 }
 
-/// Indicators told on the screen for their detection.
+/// Indicators on the screen for their detection.
 const BEST: usize = 4;
 
 fn alarm_lines(outcome: &Outcome, shown: &Measured) -> String {
@@ -202,21 +312,22 @@ fn alarm_lines(outcome: &Outcome, shown: &Measured) -> String {
         let log = outcome.alarms.iter().map(|alarm| {
             let until = alarm.cleared_at.map_or("still standing".to_owned(), |index| format!("until {index}"));
             format!(
-                "{} {} ({}) from {} ({}), {until}: largest {} over {}",
+                "{} {} ({}) from {} ({}), {until}: {} outside {}",
                 alarm.channel,
                 alarm.indicator,
                 alarm.signal,
                 alarm.raised_at,
                 alarm.raised_by,
-                short(alarm.largest),
-                short(alarm.threshold)
+                short(alarm.extreme),
+                range(alarm.lower_limit, alarm.upper_limit)
             )
         });
         log.collect()
     } else {
         let above = shown.channels.iter().flat_map(|channel| {
-            alarmed(channel, outcome).map(|(indicator, signal, value, threshold)| {
-                format!("{} {indicator} ({signal}): {} over {}", channel.name, short(value), short(threshold))
+            alarmed(channel, outcome).map(|(indicator, signal, value, limit)| {
+                let range = range(limit.lower, limit.upper);
+                format!("{} {indicator} ({signal}): {} outside {range}", channel.name, short(value))
             })
         });
         above.collect()
@@ -229,7 +340,32 @@ fn alarm_lines(outcome: &Outcome, shown: &Measured) -> String {
     if text.is_empty() {
         text
     } else {
-        format!("\n{}:\n{text}", if outcome.is_trend { "alarms" } else { "above threshold" })
+        format!("\n{}:\n{text}", if outcome.is_trend { "alarms" } else { "outside limits" })
+    }
+}
+
+/// FM4 by the usual difference signals, where the choice matters.
+fn conventions_line(shown: &Measured) -> String {
+    let details = shown.channels.iter().filter(|c| c.blocked.is_none()).filter_map(|c| {
+        let detail = c.average.as_ref().ok()?.detail.as_ref()?;
+        let fm4 = detail.conventions.iter().filter_map(|one| one.values[0].as_ref().ok().copied());
+        let (low, high) = fm4.fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
+        (high > CHOICE_MATTERS * low).then(|| format!("{} {} to {}", c.name, short(low), short(high)))
+    });
+    let Some(first) = details.into_iter().next() else { return String::new() };
+    format!("           fm4 depends on what is removed: {first} (difference_signals.csv)\n")
+}
+
+/// Ratio of FM4 by two difference signals that is reported.
+const CHOICE_MATTERS: f64 = 2.0;
+
+/// Limits in words.
+fn range(lower: Option<f64>, upper: Option<f64>) -> String {
+    match (lower, upper) {
+        (Some(lower), Some(upper)) => format!("{} to {}", short(lower), short(upper)),
+        (Some(lower), None) => format!("{} and more", short(lower)),
+        (None, Some(upper)) => format!("up to {}", short(upper)),
+        (None, None) => "any".to_owned(),
     }
 }
 

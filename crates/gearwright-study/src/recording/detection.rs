@@ -4,11 +4,32 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use hums::threshold::{Rate, Roc, detection_curve};
+use hums::detectability::HitMiss;
+use hums::threshold::{Limit, Rate, Roc, detection_curve};
 
 use super::error::RecordingError;
 use gearwright_case::input;
-use gearwright_results::recording::{Detected, FALSE_ALARMS, Limit, Limits, Measured, Row, Severity};
+use gearwright_results::recording::{Detected, FALSE_ALARMS, Limits, Measured, Pod, Row, Severity};
+
+/// Fits of all conditions of what was counted.
+fn pod(by_severity: &[(Severity, Rate)]) -> Vec<Pod> {
+    let mut conditions: Vec<&str> = by_severity.iter().map(|(severity, _)| severity.condition.as_str()).collect();
+    conditions.dedup();
+    let of = |condition: &str| {
+        let (mut severities, mut detected) = (Vec::new(), Vec::new());
+        for (severity, rate) in by_severity.iter().filter(|(s, _)| s.condition == condition) {
+            severities.extend(std::iter::repeat_n(severity.value, rate.cases));
+            detected.extend((0..rate.cases).map(|k| k < rate.hits));
+        }
+        Pod {
+            condition: condition.to_owned(),
+            recordings: detected.len(),
+            detected: detected.iter().filter(|hit| **hit).count(),
+            fit: HitMiss::fit(&severities, &detected).map_err(|reason| reason.to_string()),
+        }
+    };
+    conditions.into_iter().map(of).collect()
+}
 
 /// Detection by every indicator that both sets have, in the order of the tables.
 #[must_use]
@@ -21,23 +42,27 @@ pub fn detect(
     let Some(first) = damaged.first() else { return Vec::new() };
     let rows = first.channels.iter().flat_map(|channel| channel.rows.iter().map(move |row| (&channel.name, row)));
     let found = rows.filter_map(|(channel, row)| {
-        let values = |set: &[&Measured]| -> Vec<f64> { set.iter().filter_map(|m| m.value(channel, row)).collect() };
+        let usable = |m: &Measured| m.channels.iter().any(|c| c.name == *channel && c.blocked.is_none());
+        let values = |set: &[&Measured]| -> Vec<f64> {
+            set.iter().filter(|m| usable(m)).filter_map(|m| m.value(channel, row)).collect()
+        };
         let (of_healthy, of_damaged) = (values(healthy), values(damaged));
-        let roc = Roc::new(&of_healthy, &of_damaged).ok()?;
-        let limit = limits.of(channel, row);
-        let above = |limit: Limit| Rate::above(&of_damaged, limit.threshold).ok();
+        let roc = Roc::oriented(&of_healthy, &of_damaged).ok()?;
+        let bound = limits.of(channel, row);
+        let by_severity = bound
+            .zip(severities)
+            .map(|(bound, table)| over_severity(damaged, channel, row, &bound.limit, table))
+            .unwrap_or_default();
         Some(Detected {
             channel: channel.clone(),
             indicator: row.indicator,
             signal: row.signal,
-            limit,
-            detection: limit.and_then(above),
+            bound,
+            detection: bound.and_then(|bound| Rate::outside(&of_damaged, &bound.limit).ok()),
             best: roc.at_false_alarm_rate(FALSE_ALARMS),
             roc,
-            by_severity: limit
-                .zip(severities)
-                .map(|(limit, table)| over_severity(damaged, channel, row, limit.threshold, table))
-                .unwrap_or_default(),
+            pod: pod(&by_severity),
+            by_severity,
         })
     });
     found.filter(|detected| detected.indicator != "mean").collect()
@@ -47,7 +72,7 @@ fn over_severity(
     damaged: &[&Measured],
     channel: &str,
     row: &Row,
-    threshold: f64,
+    limit: &Limit,
     severities: &BTreeMap<String, Severity>,
 ) -> Vec<(Severity, Rate)> {
     let mut sets: Vec<(&Severity, Vec<f64>)> = Vec::new();
@@ -62,7 +87,7 @@ fn over_severity(
     }
     sets.sort_by(|a, b| a.0.order(b.0));
     let values: Vec<&[f64]> = sets.iter().map(|set| &set.1[..]).collect();
-    let rates = detection_curve(&values, threshold).unwrap_or_default();
+    let rates = detection_curve(&values, limit).unwrap_or_default();
     sets.iter().map(|set| set.0.clone()).zip(rates).collect()
 }
 

@@ -53,6 +53,20 @@ pub enum RecordingError {
         /// Channels of the recording.
         known: String,
     },
+    /// More channels than memory is set aside for.
+    #[error(
+        "{path}: {channels} channels take {needed} MiB, {allowed} MiB are allowed; choose some with signal.channels (--channel)"
+    )]
+    Memory {
+        /// Which file.
+        path: PathBuf,
+        /// Channels to judge.
+        channels: usize,
+        /// Memory they take (MiB).
+        needed: u64,
+        /// Memory allowed (MiB).
+        allowed: u64,
+    },
     /// Nothing is left to judge.
     #[error("{path}: every channel is tachometer or time; its channels are {known}")]
     NoChannels {
@@ -67,8 +81,10 @@ pub enum RecordingError {
         /// Which file.
         path: PathBuf,
     },
-    /// The time column does not tell the sampling rate.
-    #[error("{path}: the time column \"{channel}\" gives no sampling rate; give signal.rate_hz (--rate-hz)")]
+    /// The time column is no axis of equal steps.
+    #[error(
+        "{path}: the time column \"{channel}\" is not uniform; correct the file, or rename the column and give signal.rate_hz (--rate-hz)"
+    )]
     Time {
         /// Which file.
         path: PathBuf,
@@ -213,7 +229,7 @@ pub enum RecordingError {
 impl RecordingError {
     /// The message with its causes, in one line.
     #[must_use]
-    pub fn told(&self) -> String {
+    pub fn in_one_line(&self) -> String {
         let mut text = self.to_string();
         let mut cause = std::error::Error::source(self);
         while let Some(error) = cause {

@@ -3,10 +3,13 @@
 
 use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
 
 use hums::HumsError;
+use hums::difference::{RemovalRule, Splitter};
 use hums::indicator::{Entry, GearAnalysis, GearAnalyzer, Indicator, SignalKind, StreamingIndicators};
 use hums::moments::Moments;
+use hums::quality::{ChannelMonitor, Finding, Flaw};
 use hums::resample::samples_per_period;
 use hums::tachometer::Shaft;
 use hums::threshold::gaussian_standard_error;
@@ -14,13 +17,35 @@ use hums::tsa::{Average, Averager, TsaOptions};
 use rayon::prelude::*;
 
 use super::error::RecordingError;
-use super::source::{Layout, Progress, each_block, layout};
+use super::source::{Layout, Progress, check_memory, each_block, layout};
 use super::turning::turning;
 use gearwright_case::recording::RecordingCase;
-use gearwright_results::recording::{Averaged, Channel, Detail, Measured, Row};
+use gearwright_results::recording::{Averaged, Channel, Convention, Detail, Measured, Row};
 
 /// Samples of the first period kept for the plot at most.
 const SHOWN: usize = 1 << 18;
+
+/// Sideband pairs and shaft orders that are compared.
+const CONVENTIONS: [(usize, usize); 6] = [(0, 0), (1, 0), (2, 0), (0, 2), (1, 2), (2, 2)];
+
+/// Shape indicators of one average by the usual difference signals, and by the case's own.
+fn conventions(average: &[f64], rule: &RemovalRule) -> Vec<Convention> {
+    let own = (rule.sideband_pairs, rule.shaft_orders);
+    let mut all = CONVENTIONS.to_vec();
+    if !all.contains(&own) {
+        all.push(own);
+    }
+    let indicators = |(sideband_pairs, shaft_orders): (usize, usize)| {
+        let rule = RemovalRule { sideband_pairs, shaft_orders, ..rule.clone() };
+        let set = Splitter::new(average.len(), &rule).and_then(|splitter| splitter.split(average));
+        let moments = set.and_then(|set| Moments::of(&set.difference));
+        let orders = [4, 6, 8].map(|p| {
+            moments.as_ref().map_err(ToString::to_string).and_then(|m| m.standardized(p).map_err(|e| e.to_string()))
+        });
+        Convention { sideband_pairs, shaft_orders, chosen: own == (sideband_pairs, shaft_orders), values: orders }
+    };
+    all.into_iter().map(indicators).collect()
+}
 
 /// Measures a recording; `keep` its signals.
 ///
@@ -39,21 +64,34 @@ pub fn measure(
         return Err(RecordingError::Angles { path: file.into(), angles, channels, known });
     }
     let turning = turning(file, case, &layout, progress)?;
-    let plan = Plan::new(file, case, &layout, &turning.shaft)?;
+    let shaft = Arc::new(turning.shaft);
+    let plan = Plan::new(file, case, &layout, &shaft)?;
+    check_memory(file, channels, plan.samples_per_period as f64)?;
     let mut tracks: Vec<Track> = layout.judged.iter().map(|_| Track::new(&plan)).collect();
-    let samples = each_block(file, case, progress, |columns| {
+    let (samples, time_gaps) = each_block(file, case, &layout, progress, |columns| {
         tracks.par_iter_mut().zip(&layout.judged).for_each(|(track, (column, _))| track.push(&columns[*column], &plan));
         Ok(())
     })?;
+    let mut findings = layout.findings;
+    findings.extend(turning.findings);
+    if let Some(first) = time_gaps.first {
+        let share = time_gaps.missing as f64 / samples.max(1) as f64;
+        let detail = format!(
+            "{} rows are missing from the time column in {} places, the longest {} rows, first after row {first}: gaps of all channels",
+            time_gaps.missing, time_gaps.count, time_gaps.longest
+        );
+        let blocks = share > hums::quality::MAX_MISSING_SHARE;
+        findings.push(Finding { flaw: Flaw::TimeColumn, blocks, detail });
+    }
     let finished: Vec<(Channel, Option<HumsError>)> = tracks
         .into_par_iter()
         .zip(&layout.judged)
-        .map(|(track, (_, name))| track.finish(name, case, &plan, keep))
+        .map(|(track, (_, name))| track.finish(name, case, &plan, &findings, keep))
         .collect();
     let no_period = |source| RecordingError::NoPeriod {
         path: file.into(),
         duration: samples as f64 / layout.rate,
-        period: case.period_turns / turning.shaft.speed_range().0,
+        period: case.period_turns / shaft.speed_range().0,
         source,
     };
     if finished.iter().all(|(channel, _)| channel.average.is_err())
@@ -65,8 +103,9 @@ pub fn measure(
         name: file.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         rate: layout.rate,
         samples,
-        speed: turning.shaft.speed_range(),
+        speed: shaft.speed_range(),
         pulses: turning.pulses,
+        findings,
         channels: finished.into_iter().map(|(channel, _)| channel).collect(),
     })
 }
@@ -75,7 +114,8 @@ pub fn measure(
 struct Plan {
     averager: Averager,
     analyzer: GearAnalyzer,
-    shaft: Shaft,
+    samples_per_period: usize,
+    shaft: Arc<Shaft>,
     rate: f64,
     /// Turn at which the first period begins, and its samples.
     first_turn: f64,
@@ -85,7 +125,7 @@ struct Plan {
 }
 
 impl Plan {
-    fn new(file: &Path, case: &RecordingCase, layout: &Layout, shaft: &Shaft) -> Result<Self, RecordingError> {
+    fn new(file: &Path, case: &RecordingCase, layout: &Layout, shaft: &Arc<Shaft>) -> Result<Self, RecordingError> {
         let failed = |key| move |source| RecordingError::Parameter { path: file.into(), key, source };
         let (rate, period) = (layout.rate, case.period_turns);
         let (slowest, fastest) = shaft.speed_range();
@@ -104,7 +144,7 @@ impl Plan {
             max_blocks: case.inputs.average.max_periods.map(|count| count as usize),
             interpolation: case.interpolation,
         };
-        let averager = Averager::new(rate, shaft.clone(), options).map_err(failed("average.turns"))?;
+        let averager = Averager::new(rate, Arc::clone(shaft), options).map_err(failed("average.turns"))?;
         let analyzer = GearAnalyzer::new(samples_per_period, &case.rule).map_err(failed("average.samples"))?;
         // Orders above the Nyquist frequency of the recording carry nothing.
         let orders = (rate * period / slowest / 2.0).min(samples_per_period as f64 / 2.0) as usize;
@@ -117,7 +157,8 @@ impl Plan {
         Ok(Self {
             averager,
             analyzer,
-            shaft: shaft.clone(),
+            samples_per_period,
+            shaft: Arc::clone(shaft),
             rate,
             first_turn,
             first_samples: first..at(first_turn + period).min(first.saturating_add(SHOWN)),
@@ -128,32 +169,32 @@ impl Plan {
 
 /// A channel on its way.
 struct Track {
+    quality: ChannelMonitor,
     raw: Option<StreamingIndicators>,
     raw_fault: Option<HumsError>,
     averager: Averager,
     first_period: Vec<f64>,
     samples: usize,
-    missing: usize,
 }
 
 impl Track {
     fn new(plan: &Plan) -> Self {
         Self {
+            quality: ChannelMonitor::default(),
             raw: None,
             raw_fault: None,
             averager: plan.averager.clone(),
             first_period: Vec::new(),
             samples: 0,
-            missing: 0,
         }
     }
 
     fn push(&mut self, samples: &[f64], plan: &Plan) {
-        self.missing += samples.iter().filter(|x| !x.is_finite()).count();
+        self.quality.push(samples);
         if self.raw_fault.is_none() {
             // The first block tells the order of magnitude.
             let peak = || samples.iter().filter(|x| x.is_finite()).fold(0.0_f64, |m, x| m.max(x.abs()));
-            let raw = self.raw.get_or_insert_with(|| StreamingIndicators::new(SignalKind::Raw, peak()));
+            let raw = self.raw.get_or_insert_with(|| StreamingIndicators::new(peak()));
             self.raw_fault = raw.push(samples).err();
         }
         let (from, to) = (self.samples, self.samples + samples.len());
@@ -165,7 +206,19 @@ impl Track {
         self.averager.push(samples);
     }
 
-    fn finish(self, name: &str, case: &RecordingCase, plan: &Plan, keep: bool) -> (Channel, Option<HumsError>) {
+    fn finish(
+        self,
+        name: &str,
+        case: &RecordingCase,
+        plan: &Plan,
+        of_recording: &[Finding],
+        keep: bool,
+    ) -> (Channel, Option<HumsError>) {
+        let quality = self.quality.finish();
+        let findings = quality.findings();
+        let counts = |finding: &&Finding| finding.blocks && !case.accepted.contains(&finding.flaw);
+        let blocked = of_recording.iter().chain(&findings).find(counts);
+        let blocked = blocked.map(|finding| format!("{}: {}", finding.flaw.name(), finding.detail));
         let empty = HumsError::TooShort { what: "indicators", needed: 1, found: 0 };
         let raw = match (self.raw, self.raw_fault) {
             (_, Some(fault)) => Err(fault),
@@ -186,7 +239,7 @@ impl Track {
             let shown = if keep { self.first_period } else { Vec::new() };
             averaged(average, analysis, case, plan, keep.then_some(shown))
         });
-        (Channel { name: name.into(), missing: self.missing, rows, average }, fault)
+        (Channel { name: name.into(), missing: quality.gaps.samples, findings, blocked, rows, average }, fault)
     }
 }
 
@@ -243,10 +296,12 @@ fn averaged(
         let turn = |index: usize| plan.shaft.turn_at(index as f64 / plan.rate);
         let place = |k: usize| turn(first + k).map(|turn| (turn - plan.first_turn).clamp(0.0, case.period_turns));
         let amplitudes = analysis.signals.spectrum.amplitudes();
+        let conventions = conventions(&average.samples, &case.rule);
         Detail {
             first_period: samples.iter().enumerate().filter_map(|(k, x)| Some((place(k)?, *x))).collect(),
             signals: [average.samples, analysis.signals.residual, analysis.signals.difference],
             amplitudes,
+            conventions,
         }
     });
     Averaged { periods, skipped, removed_rms, noise_floor, memory: [residual, envelope], detail }

@@ -40,7 +40,7 @@ pub fn compute(case: &RecordingCase, observer: &dyn RunObserver) -> Result<Outco
                 Err(RecordingError::Cancelled) => Err(RecordingError::Cancelled),
                 other => {
                     let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-                    Ok(Entry { name, measured: other.map_err(|fault| fault.told()) })
+                    Ok(Entry { name, measured: other.map_err(|fault| fault.in_one_line()) })
                 }
             })
             .collect()
@@ -70,7 +70,7 @@ pub fn compute(case: &RecordingCase, observer: &dyn RunObserver) -> Result<Outco
         let known = match &case.limits {
             LimitSource::Healthy(HealthySet::First(count), _) => Some(*count),
             LimitSource::Healthy(HealthySet::Folder(_), _) => Some(healthy.len()),
-            LimitSource::Gaussian => None,
+            LimitSource::Gaussian(_) => None,
         };
         let in_order = healthy.iter_mut().chain(&mut entries).filter_map(|entry| entry.measured.as_mut().ok());
         trend::remember(in_order, &case.memory, known).map_err(|source| RecordingError::Parameter {

@@ -42,7 +42,7 @@ impl Files {
         let of_trend = |message| if is_trend { Ok(()) } else { Err(RecordingError::Kind { path: path(), message }) };
         let (mut healthy, mut first) = (Vec::new(), 0);
         match &case.limits {
-            LimitSource::Gaussian => {}
+            LimitSource::Gaussian(_) => {}
             LimitSource::Healthy(HealthySet::Folder(folder), _) => {
                 healthy = recordings(folder, "thresholds.healthy (--healthy)")?
             }
@@ -84,8 +84,12 @@ pub fn limits<'a>(
     healthy: &'a [Entry],
     entries: &'a [Entry],
 ) -> Result<(Limits, Vec<&'a Measured>), RecordingError> {
-    let LimitSource::Healthy(set, rule) = &case.limits else {
-        return Ok((Limits::Gaussian(case.inputs.thresholds.sigmas), Vec::new()));
+    let (set, rule) = match &case.limits {
+        LimitSource::Healthy(set, rule) => (set, rule),
+        LimitSource::Gaussian(rule) => {
+            let channels = measured(entries).iter().map(|m| m.channels.len()).max().unwrap_or(1);
+            return Ok((Limits::gaussian(*rule, channels), Vec::new()));
+        }
     };
     let (set, path) = match set {
         HealthySet::Folder(path) => (healthy, path),
@@ -95,7 +99,7 @@ pub fn limits<'a>(
     if set.len() < 2 {
         return Err(RecordingError::Healthy { path: path.clone(), found: set.len() });
     }
-    Ok((Limits::of_healthy(set.iter().copied(), *rule), set))
+    Ok((Limits::of_healthy(&set, *rule), set))
 }
 
 /// Detection, where a case asks for it; `damaged` is a set of its own, `entries` the recordings judged.

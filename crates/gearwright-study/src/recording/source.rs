@@ -4,15 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use hums::io::{EXTENSIONS, is_recording, open_counted, rate_of_times};
+use hums::io::{BlockReader, EXTENSIONS, block_samples, is_recording, open_counted};
+use hums::quality::{Finding, Flaw};
+use hums::time_axis::{TimeAxis, TimeGaps, step_of};
 
 use super::error::RecordingError;
 use crate::RunObserver;
 use gearwright_case::recording::RecordingCase;
 use gearwright_case::recording::resolve::TachometerSource;
-
-/// Samples of a block: memory does not grow with the recording.
-const BLOCK: usize = 1 << 16;
 
 /// The recordings of a file or folder, in the order of their names.
 ///
@@ -21,6 +20,9 @@ const BLOCK: usize = 1 << 16;
 pub fn recordings(path: &Path, key: &'static str) -> Result<Vec<PathBuf>, RecordingError> {
     if path.is_file() {
         return Ok(vec![path.to_path_buf()]);
+    }
+    if path.exists() && !path.is_dir() {
+        return Err(RecordingError::Kind { path: path.into(), message: "it is neither a file nor a folder" });
     }
     let Ok(entries) = std::fs::read_dir(path) else {
         return Err(RecordingError::Missing { path: path.into(), key });
@@ -84,29 +86,53 @@ impl<'a> Progress<'a> {
     }
 }
 
-/// Hands the columns of a recording to `take`, block by block; returns the number of samples.
+/// Hands the columns of a recording to `take`, block by block, rows that are missing from its time column put in as NaN; returns the
+/// number of samples and what is missing.
 ///
 /// # Errors
-/// The reader's, `take`'s, or that the run was stopped.
+/// The reader's, the time column's, `take`'s, or that the run was stopped.
 pub fn each_block(
     file: &Path,
     case: &RecordingCase,
+    layout: &Layout,
     progress: &Progress<'_>,
     mut take: impl FnMut(&[Vec<f64>]) -> Result<(), RecordingError>,
-) -> Result<usize, RecordingError> {
+) -> Result<(usize, TimeGaps), RecordingError> {
     let failed = |source| RecordingError::Read { path: file.into(), source };
     let mut reader = open_counted(file, &case.text, &progress.bytes).map_err(failed)?;
-    let mut columns = vec![Vec::new(); reader.channels().len()];
+    let channels = reader.channels().len();
+    let mut columns = vec![Vec::new(); channels];
+    let timed =
+        |source, time: &TimeColumn| RecordingError::Time { path: file.into(), channel: time.name.clone(), source };
+    let mut axis = match &layout.time {
+        Some(time) => Some((TimeAxis::new(time.step).map_err(|e| timed(e, time))?, time)),
+        None => None,
+    };
     let mut samples = 0;
     loop {
-        match reader.read_block(BLOCK, &mut columns).map_err(failed)? {
-            0 => return Ok(samples),
-            count => samples += count,
+        let mut count = reader.read_block(block_samples(channels), &mut columns).map_err(failed)?;
+        if count == 0 {
+            return Ok((samples, axis.map(|(axis, _)| axis.gaps()).unwrap_or_default()));
         }
+        if let Some((axis, time)) = &mut axis {
+            count += axis.complete(&mut columns, time.column, 0).map_err(|e| timed(e, time))?;
+        }
+        samples += count;
         take(&columns)?;
         columns.iter_mut().for_each(Vec::clear);
         progress.block()?;
     }
+}
+
+/// A time column.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimeColumn {
+    /// Where.
+    pub column: usize,
+    /// Its name.
+    pub name: String,
+    /// Its step, in its own unit.
+    pub step: f64,
 }
 
 /// Which channels of a recording are what.
@@ -118,6 +144,32 @@ pub struct Layout {
     pub judged: Vec<(usize, String)>,
     /// Column of the tachometer.
     pub tachometer: Option<usize>,
+    /// The time column.
+    pub time: Option<TimeColumn>,
+    /// What is odd about the recording as a whole.
+    pub findings: Vec<Finding>,
+}
+
+/// Memory for the channels judged at most (bytes).
+const MAX_MEMORY: u64 = 4 << 30;
+
+/// Memory that `channels` channels with `period` samples in a period take at most (bytes): two periods and their sums, a block of statistics, their share
+/// of a block.
+fn memory(channels: usize, period: f64) -> u64 {
+    let each = 8.0 * (6.0 * period + 2.0 * hums::moments::BLOCK as f64) + 16_384.0;
+    (channels as f64 * each) as u64
+}
+
+/// Refuses more channels than [`MAX_MEMORY`] holds.
+///
+/// # Errors
+/// [`RecordingError::Memory`].
+pub fn check_memory(file: &Path, channels: usize, period: f64) -> Result<(), RecordingError> {
+    let bytes = memory(channels, period);
+    if bytes <= MAX_MEMORY {
+        return Ok(());
+    }
+    Err(RecordingError::Memory { path: file.into(), channels, needed: bytes >> 20, allowed: MAX_MEMORY >> 20 })
 }
 
 /// Looks at the head of a recording.
@@ -141,7 +193,7 @@ pub fn layout(file: &Path, case: &RecordingCase) -> Result<Layout, RecordingErro
     };
     let time = match &case.inputs.signal.time_channel {
         Some(name) => Some(find(name)?),
-        None => names.iter().position(|name| is_time(name)),
+        None => names.iter().position(|name| time_unit(name).is_some()),
     };
     let columns: Vec<usize> = if case.channels.is_empty() {
         (0..names.len()).filter(|c| Some(*c) != tachometer && Some(*c) != time).collect()
@@ -158,20 +210,55 @@ pub fn layout(file: &Path, case: &RecordingCase) -> Result<Layout, RecordingErro
     if columns.is_empty() {
         return Err(RecordingError::NoChannels { path: file.into(), known: listed(&names) });
     }
-    let rate = match (case.inputs.signal.rate_hz.or(reader.rate()), time) {
-        (Some(rate), _) => rate,
-        (None, Some(column)) => {
-            let mut head = vec![Vec::new(); names.len()];
-            reader.read_block(BLOCK, &mut head).map_err(failed)?;
-            rate_of_times(&head[column]).map_err(|source| RecordingError::Time {
-                path: file.into(),
-                channel: names[column].clone(),
-                source,
-            })?
+    let note = |detail: &String| Finding { flaw: Flaw::LeftOut, blocks: false, detail: detail.clone() };
+    let mut findings: Vec<Finding> = reader.notes().iter().map(note).collect();
+    let of_file = reader.rate();
+    let given = case.inputs.signal.rate_hz;
+    let (mut axis, mut of_time) = (None, None);
+    if let Some(column) = time {
+        match head_step(reader.as_mut(), column).map_err(failed)? {
+            Ok(step) => {
+                of_time = Some(1.0 / (step * time_unit(&names[column]).unwrap_or(1.0)));
+                axis = Some(TimeColumn { column, name: names[column].clone(), step });
+            }
+            // Another rate makes up for it.
+            Err(fault) if given.or(of_file).is_some() => {
+                let detail = format!("\"{}\" is of no use: {fault}", names[column]);
+                findings.push(Finding { flaw: Flaw::TimeColumn, blocks: false, detail });
+            }
+            Err(source) => {
+                return Err(RecordingError::Time { path: file.into(), channel: names[column].clone(), source });
+            }
         }
-        (None, None) => return Err(RecordingError::Rate { path: file.into() }),
-    };
-    Ok(Layout { rate, judged: columns.into_iter().map(|c| (c, names[c].clone())).collect(), tachometer })
+    }
+    let sources = [("signal.rate_hz", given), ("the file", of_file), ("the time column", of_time)];
+    let mut known = sources.iter().filter_map(|(name, rate)| Some((name, (*rate)?)));
+    let Some((first, rate)) = known.next() else { return Err(RecordingError::Rate { path: file.into() }) };
+    for (name, other) in known {
+        if (other / rate - 1.0).abs() > RATE_TOLERANCE {
+            let detail = format!("{first} says {rate} Hz, {name} {other} Hz");
+            findings.push(Finding { flaw: Flaw::RateConflict, blocks: true, detail });
+        }
+    }
+    let judged = columns.into_iter().map(|c| (c, names[c].clone())).collect();
+    Ok(Layout { rate, judged, tachometer, time: axis, findings })
+}
+
+/// Relative difference of two sampling rates that is a conflict.
+const RATE_TOLERANCE: f64 = 1e-3;
+/// Rows at the head of a recording that give the step of its time column.
+const HEAD: usize = 1 << 16;
+
+/// Step of a time column from the head of a recording.
+fn head_step(reader: &mut dyn BlockReader, column: usize) -> Result<hums::Result<f64>, hums::io::ReadError> {
+    let channels = reader.channels().len();
+    let mut block = vec![Vec::new(); channels];
+    let mut times = Vec::new();
+    while times.len() < HEAD && reader.read_block(block_samples(channels), &mut block)? > 0 {
+        times.extend_from_slice(&block[column]);
+        block.iter_mut().for_each(Vec::clear);
+    }
+    Ok(step_of(&times))
 }
 
 /// Column of a channel given by name (any case if that is not ambiguous) or by number from 1.
@@ -193,12 +280,19 @@ fn listed(names: &[String]) -> String {
     text
 }
 
-/// "time", "t", "Time (s)", "time_s", "t [s]".
-fn is_time(name: &str) -> bool {
+/// Unit (s) of a channel whose name is that of a time: "time", "t", "Time (s)", "time_ms", "t [us]".
+fn time_unit(name: &str) -> Option<f64> {
     let lower = name.to_ascii_lowercase();
-    let word = lower.split(|c: char| !c.is_ascii_alphanumeric()).find(|part| !part.is_empty());
-    let rest = lower.split(|c: char| !c.is_ascii_alphanumeric()).filter(|part| !part.is_empty()).nth(1);
-    matches!(word, Some("time" | "t")) && matches!(rest, None | Some("s" | "sec" | "seconds"))
+    let mut words = lower.split(|c: char| !c.is_ascii_alphanumeric()).filter(|part| !part.is_empty());
+    if !matches!(words.next(), Some("time" | "t")) {
+        return None;
+    }
+    match words.next() {
+        None | Some("s" | "sec" | "seconds") => Some(1.0),
+        Some("ms") => Some(1e-3),
+        Some("us") => Some(1e-6),
+        Some(_) => None,
+    }
 }
 
 #[cfg(test)]
@@ -227,10 +321,15 @@ mod tests {
         assert_eq!(channel(&names, "3"), Some(2));
         assert_eq!(channel(&names, "0"), None);
         assert_eq!(channel(&names, "6"), None);
-        for (name, expected) in
-            [("Time (s)", true), ("t", true), ("time_s", true), ("time of day", false), ("x", false)]
-        {
-            assert_eq!(is_time(name), expected, "{name}");
+        for (name, expected) in [
+            ("Time (s)", Some(1.0)),
+            ("t", Some(1.0)),
+            ("time_ms", Some(1e-3)),
+            ("t [us]", Some(1e-6)),
+            ("time of day", None),
+            ("x", None),
+        ] {
+            assert_eq!(time_unit(name), expected, "{name}");
         }
     }
 }

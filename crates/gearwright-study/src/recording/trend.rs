@@ -6,7 +6,7 @@ use hums::indicator::trend::{Memory, QuasiKurtosis};
 use hums::threshold::{AlarmRule, Rate, alarms};
 
 use gearwright_case::recording::resolve::MemoryPlan;
-use gearwright_results::recording::{Alarm, Entry, Limits, Measured, Row, value};
+use gearwright_results::recording::{Alarm, Entry, Limits, Measured, Row};
 
 /// Kinds of memory with the names of their rows: NA4 of the residual signal, NB4 of the mesh envelope.
 const RUNNING: [&str; 2] = ["na4_running", "nb4_running"];
@@ -84,26 +84,40 @@ pub fn alarm_log(trend: &[Entry], limits: &Limits, hits: usize, window: usize) -
     }
     let mut log = Vec::new();
     for (channel, quantity) in quantities {
-        let Some(limit) = limits.of(channel, quantity) else { continue };
-        let values: Vec<Option<f64>> = trend.iter().map(|entry| value(entry, channel, quantity)).collect();
+        let Some(bound) = limits.of(channel, quantity) else { continue };
+        let limit = bound.limit;
+        let values: Vec<Option<f64>> = trend.iter().map(|entry| judged_value(entry, channel, quantity)).collect();
         let present: Vec<f64> = values.iter().flatten().copied().collect();
-        let rule = AlarmRule { threshold: limit.threshold, hits, window };
+        if present.is_empty() {
+            continue;
+        }
+        let rule = AlarmRule { limit, hits, window };
         for range in alarms(&values, &rule)? {
-            let largest = values[range.clone()].iter().flatten().copied().fold(f64::NEG_INFINITY, f64::max);
+            let meanwhile = values[range.clone()].iter().flatten().copied();
+            let further = |a: f64, b: f64| if limit.deviation(b) > limit.deviation(a) { b } else { a };
+            let extreme = meanwhile.reduce(further).unwrap_or(limit.centre);
             log.push(Alarm {
                 channel: channel.to_owned(),
                 indicator: quantity.indicator,
                 signal: quantity.signal,
-                threshold: limit.threshold,
+                lower_limit: limit.lower,
+                upper_limit: limit.upper,
                 raised_at: range.start + 1,
                 raised_by: trend[range.start].name.clone(),
                 cleared_at: (range.end < trend.len()).then_some(range.end + 1),
-                largest,
-                share_above: Rate::above(&present, limit.threshold)?.value(),
+                extreme,
+                share_outside: Rate::outside(&present, &limit)?.value(),
             });
         }
     }
     // As they came up; those of one recording in the order of channels and indicators.
     log.sort_by_key(|alarm| alarm.raised_at);
     Ok(log)
+}
+
+/// Value of an indicator in a recording whose channel may be judged.
+fn judged_value(entry: &Entry, channel: &str, quantity: &Row) -> Option<f64> {
+    let measured = entry.measured.as_ref().ok()?;
+    let usable = measured.channels.iter().any(|c| c.name == channel && c.blocked.is_none());
+    measured.value(channel, quantity).filter(|_| usable)
 }

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use hums::io::{is_recording, open, read_all};
+use hums::quality::{Finding, Flaw};
 use hums::tachometer::{PulseFinder, PulseOptions, RepairedPulses, Shaft, repair};
 
 use super::error::RecordingError;
@@ -21,6 +22,8 @@ pub struct Turning {
     pub shaft: Shaft,
     /// Pulses behind it.
     pub pulses: Option<Pulses>,
+    /// Standstills.
+    pub findings: Vec<Finding>,
 }
 
 /// Times that a recording is read.
@@ -49,7 +52,7 @@ pub fn turning(
         TachometerSource::Speed(speed) => {
             let shaft = Shaft::constant(*speed, LONGEST, layout.rate).and_then(|shaft| shaft.geared(ratio));
             let failed = |source| RecordingError::Parameter { path: file.into(), key: "tachometer.speed_hz", source };
-            return Ok(Turning { shaft: shaft.map_err(failed)?, pulses: None });
+            return Ok(Turning { shaft: shaft.map_err(failed)?, pulses: None, findings: Vec::new() });
         }
         TachometerSource::Channel(name, options) => {
             (format!("channel \"{name}\""), channel_pulses(file, case, layout, options, progress))
@@ -61,11 +64,30 @@ pub fn turning(
     };
     let failed = |source| RecordingError::Tachometer { path: file.into(), what: what.clone(), source };
     let times = times?.map_err(failed)?;
-    let repaired: RepairedPulses = repair(&times).map_err(failed)?;
+    let mut repaired: RepairedPulses = repair(&times).map_err(failed)?;
+    let pulses = Pulses { found: times.len(), missing: repaired.missing, extra: repaired.extra };
+    let findings = standstill(&repaired).into_iter().collect();
+    // A pulse for every whole period keeps the phase across a hole; otherwise it is lost there.
+    let periods = ratio / tachometer.pulses_per_turn / case.period_turns;
+    if !repaired.holes.is_empty() && (periods - periods.round()).abs() > 1e-9 * periods {
+        repaired = repaired.longest_stretch();
+    }
     let shaft = Shaft::from_repaired(&repaired, tachometer.pulses_per_turn).map_err(failed)?;
     let shaft = shaft.geared(ratio).map_err(failed)?;
-    let pulses = Pulses { found: times.len(), missing: repaired.missing, extra: repaired.extra };
-    Ok(Turning { shaft, pulses: Some(pulses) })
+    Ok(Turning { shaft, pulses: Some(pulses), findings })
+}
+
+fn standstill(pulses: &RepairedPulses) -> Option<Finding> {
+    let first = *pulses.holes.first()?;
+    let length = |&hole: &usize| pulses.times[hole + 1] - pulses.times[hole];
+    let total: f64 = pulses.holes.iter().map(length).sum();
+    let detail = format!(
+        "no pulses for {total:.3} s in {} places, first {:.3} s from {:.3} s on (standstill, or pulses lost); left out",
+        pulses.holes.len(),
+        length(&first),
+        pulses.times[first]
+    );
+    Some(Finding { flaw: Flaw::Standstill, blocks: false, detail })
 }
 
 /// Pulse times, or why the channel has none.
@@ -83,7 +105,7 @@ fn channel_pulses(
         (Some(level), Some(band)) => (level, band),
         _ => {
             let mut range = (f64::INFINITY, f64::NEG_INFINITY);
-            each_block(file, case, progress, |columns| {
+            each_block(file, case, layout, progress, |columns| {
                 for x in columns[column].iter().filter(|x| x.is_finite()) {
                     range = (range.0.min(*x), range.1.max(*x));
                 }
@@ -102,7 +124,7 @@ fn channel_pulses(
         Err(error) => return Ok(Err(error)),
     };
     let mut times = Vec::new();
-    each_block(file, case, progress, |columns| {
+    each_block(file, case, layout, progress, |columns| {
         finder.push(&columns[column], &mut times);
         Ok(())
     })?;

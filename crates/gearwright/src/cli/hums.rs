@@ -12,7 +12,7 @@ use gearwright_case::{self as case, Case, CaseFaults};
 
 use super::exit::refused;
 
-/// Name that faults of flags are told under.
+/// Name that faults of flags are reported under.
 const COMMAND_LINE: &str = "command line";
 
 /// Flags of `gearwright hums`. All but `--out` and `--threads` stand for keys of a case of the kind "recording".
@@ -51,19 +51,25 @@ pub struct Flags {
     /// Periods a turn: the number of planets, for planet passes of a carrier.
     #[arg(long, requires = "signal")]
     per_turn: Option<u32>,
-    /// Sideband pairs removed from the difference signal; default 1.
+    /// Sideband pairs about each mesh harmonic removed from the difference signal; default 1.
+    #[arg(long, visible_alias = "sidebands", requires = "signal")]
+    sideband_pairs: Option<u32>,
+    /// Shaft orders, from 1 on, removed from residual and difference signal; default 2.
     #[arg(long, requires = "signal")]
-    sidebands: Option<u32>,
+    shaft_orders: Option<u32>,
+    /// Flaws of a recording that do not keep it from being judged, e.g. clipped,drift.
+    #[arg(long, value_name = "FLAW,..", requires = "signal")]
+    accept: Option<String>,
     /// Folder of recordings of the healthy state, for thresholds.
     #[arg(long, value_name = "FOLDER", requires = "signal")]
     healthy: Option<String>,
-    /// Of a folder of recordings, so many of the first are healthy.
+    /// Number of recordings, from the first of the folder on, that are healthy.
     #[arg(long, requires = "signal")]
     healthy_first: Option<u32>,
     /// Folder of recordings of the damaged state: rates of detection, ROC.
     #[arg(long, value_name = "FOLDER", requires = "signal")]
     damaged: Option<String>,
-    /// Of a folder of recordings, so many of the last are the damaged state.
+    /// Number of recordings at the end of the folder that are the damaged state.
     #[arg(long, requires = "signal")]
     damaged_last: Option<u32>,
     /// Text file with columns recording, severity and, if wanted, condition (level of noise, ..): probability
@@ -73,11 +79,14 @@ pub struct Flags {
     /// Angles of the sensors about the housing (degrees), one for each channel, e.g. 0,90,180: polar maps.
     #[arg(long, value_name = "A,B,..", value_delimiter = ',', allow_negative_numbers = true, requires = "signal")]
     angles_deg: Vec<f64>,
-    /// Standard errors or deviations from mean to threshold; default 3.
+    /// Probability that a healthy recording raises any alarm; default 0.01.
     #[arg(long, requires = "signal")]
+    false_alarm_rate: Option<f64>,
+    /// Limits this number of standard deviations (or errors) from the mean, each indicator on its own.
+    #[arg(long, requires = "signal", conflicts_with = "false_alarm_rate")]
     sigmas: Option<f64>,
-    /// Threshold at this quantile of the healthy set.
-    #[arg(long, requires = "signal", conflicts_with = "sigmas")]
+    /// Limits that hold this share of the healthy set.
+    #[arg(long, requires = "signal", conflicts_with_all = ["sigmas", "false_alarm_rate"])]
     quantile: Option<f64>,
     /// Unit of the channels, for headings.
     #[arg(long, requires = "signal")]
@@ -161,12 +170,18 @@ impl Flags {
         case.insert("average".into(), section.into());
 
         let mut section = Table::new();
-        put(&mut section, "sideband_pairs", self.sidebands.map(i64::from));
+        put(&mut section, "sideband_pairs", self.sideband_pairs.map(i64::from));
+        put(&mut section, "shaft_orders", self.shaft_orders.map(i64::from));
         case.insert("difference".into(), section.into());
+
+        let mut section = Table::new();
+        put(&mut section, "accept", self.accept.as_deref());
+        case.insert("quality".into(), section.into());
 
         let mut section = Table::new();
         put(&mut section, "healthy", self.healthy.as_deref());
         put(&mut section, "healthy_first", self.healthy_first.map(i64::from));
+        put(&mut section, "false_alarm_rate", self.false_alarm_rate);
         put(&mut section, "sigmas", self.sigmas);
         put(&mut section, "quantile", self.quantile);
         put(&mut section, "method", self.quantile.map(|_| "quantile"));
@@ -192,7 +207,7 @@ fn put(section: &mut Table, key: &str, value: Option<impl Into<Value>>) {
 }
 
 /// Keys and the flags that set them.
-const FLAGS: [(&str, &str); 24] = [
+const FLAGS: [(&str, &str); 27] = [
     ("signal.file", "--signal"),
     ("signal.channels", "--channel"),
     ("signal.rate_hz", "--rate-hz"),
@@ -209,7 +224,10 @@ const FLAGS: [(&str, &str); 24] = [
     ("tachometer.gear_ratio_divisor", "--gear-ratio"),
     ("average.turns", "--turns"),
     ("average.per_turn", "--turns, --per-turn"),
-    ("difference.sideband_pairs", "--sidebands"),
+    ("difference.sideband_pairs", "--sideband-pairs"),
+    ("difference.shaft_orders", "--shaft-orders"),
+    ("quality.accept", "--accept"),
+    ("thresholds.false_alarm_rate", "--false-alarm-rate"),
     ("thresholds.healthy_first", "--healthy-first"),
     ("thresholds.sigmas", "--sigmas"),
     ("thresholds.quantile", "--quantile"),

@@ -25,18 +25,23 @@ pub fn run(case: &RecordingCase, target: &Path, observer: &dyn RunObserver) -> a
     let file = |name: &str| folder.file(name);
     let shown = outcome.shown().ok_or_else(|| anyhow!("no recording could be used"))?;
     tables::indicators(&file("indicators.csv"), shown, &outcome.limits)?;
+    tables::quality(&file("quality.csv"), &outcome.entries)?;
+    tables::difference_signals(&file("difference_signals.csv"), shown)?;
     if case.inputs.output.averages {
         tables::averages(&file("averages.csv"), shown, case.period_turns)?;
+        tables::order_spectrum(&file("order_spectrum.csv"), shown, &case.rule, case.period_turns)?;
     }
     if outcome.is_trend {
         tables::trend(&file("trend.csv"), &outcome.entries, &outcome.limits)?;
         tables::alarms(&file("alarms.csv"), &outcome.alarms)?;
+        tables::health_index(&file("health_index.csv"), &outcome.entries, &outcome.limits)?;
     }
     if let Some(detection) = &outcome.detection {
         detection_tables::rates(&file("detection.csv"), &detection.detected)?;
         detection_tables::roc(&file("roc.csv"), &detection.detected)?;
         if case.detection.as_ref().is_some_and(|plan| plan.severities.is_some()) {
             detection_tables::severities(&file("detection_over_severity.csv"), &detection.detected)?;
+            detection_tables::pod(&file("pod.csv"), &detection.detected)?;
         }
     }
     if case.inputs.output.plots {

@@ -9,7 +9,7 @@
 //! | kurtosis, FM4 | `N sum (x - m)^4 / [sum (x - m)^2]^2` | D 4.2, D A.3; Stewart 1977 |
 //! | M6A, M8A | `N^2 sum (x - m)^6 / [..]^3`, `N^3 sum (x - m)^8 / [..]^4` | D 4.3; Martin 1989 |
 //! | skewness | `1/N sum (x - m)^3 / sigma^3` | - |
-//! | energy operator | kurtosis of `x_i^2 - x_(i+1) x_(i-1)`, ends cyclic | D A.4; Ma 1995 |
+//! | energy operator | kurtosis of `x_i^2 - x_(i+1) x_(i-1)`; ends cyclic for averages, see [`Ends`] | D A.4; Ma 1995 |
 //! | S_alpha | `1/N sum |x - m|^alpha / sigma^alpha` | see [`normalized_moment`] |
 //!
 //! Conventions: N samples, m their mean, population moments (`1/N`). The index range `i = 2..N`
@@ -126,21 +126,30 @@ pub fn m8a(difference: &[f64]) -> Result<f64> {
     Moments::of(difference)?.standardized(8)
 }
 
-/// Energy operator: kurtosis of the Teager-Kaiser energy `x_i^2 - x_(i+1) x_(i-1)` with cyclic
-/// ends (D A.4), which suits a synchronous average. 9 for white Gaussian noise (`z = a^2 - b c` has
-/// variance 3 and fourth central moment 81, in units of sigma).
+/// What follows the last sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ends {
+    /// The first one: the signal is one period of a periodic signal (a synchronous average).
+    Cyclic,
+    /// Nothing: a record. Its first and last sample have no Teager energy. Joining them, as D A.4 does for
+    /// averages, makes an impulse of the step between the ends.
+    Open,
+}
+
+/// Energy operator: kurtosis of the Teager-Kaiser energy `x_i^2 - x_(i+1) x_(i-1)` (D A.4). 9 for white
+/// Gaussian noise (`z = a^2 - b c` has variance 3 and fourth central moment 81, in units of sigma).
 ///
-/// A sampled sine of a whole number of periods has *constant* Teager energy `A^2 sin^2(omega)`, so
-/// the indicator is undefined for it.
+/// A sampled sine has *constant* Teager energy `A^2 sin^2(omega)`, so the indicator is undefined for it (with
+/// cyclic ends: for a whole number of periods).
 ///
 /// # Errors
 /// Fewer than three samples, a non-finite sample, or constant Teager energy.
-pub fn energy_operator(signal: &[f64]) -> Result<f64> {
-    energy_operator_scaled(signal, crate::moments::peak(signal))
+pub fn energy_operator(signal: &[f64], ends: Ends) -> Result<f64> {
+    energy_operator_scaled(signal, crate::moments::peak(signal), ends)
 }
 
-pub(crate) fn energy_operator_scaled(signal: &[f64], peak: f64) -> Result<f64> {
-    let mut accumulator = TeagerAccumulator::with_peak(peak);
+pub(crate) fn energy_operator_scaled(signal: &[f64], peak: f64, ends: Ends) -> Result<f64> {
+    let mut accumulator = TeagerAccumulator::with_peak(peak, ends);
     accumulator.push(signal).and_then(|()| accumulator.finish(peak)).map_err(|error| {
         match signal.iter().position(|x| !x.is_finite()) {
             // A fault found in derived samples is restated in terms of the signal's own.
@@ -152,9 +161,10 @@ pub(crate) fn energy_operator_scaled(signal: &[f64], peak: f64) -> Result<f64> {
 
 const ENERGY_OPERATOR: &str = "energy operator";
 
-/// Streaming kurtosis of the Teager energy; the cyclic ends are added last.
+/// Streaming kurtosis of the Teager energy; cyclic ends are added last.
 #[derive(Debug, Clone)]
 pub(crate) struct TeagerAccumulator {
+    ends: Ends,
     /// Power of two the samples are multiplied by, which keeps the squares in range and is exact.
     scale: f64,
     first: [f64; 2],
@@ -170,8 +180,9 @@ fn inverse_scale(peak: f64) -> f64 {
 
 impl TeagerAccumulator {
     /// For samples of the order of `peak` (unit of the signal).
-    pub(crate) fn with_peak(peak: f64) -> Self {
+    pub(crate) fn with_peak(peak: f64, ends: Ends) -> Self {
         Self {
+            ends,
             scale: inverse_scale(peak),
             first: [0.0; 2],
             last: [0.0; 2],
@@ -183,6 +194,12 @@ impl TeagerAccumulator {
     fn teager(&self, before: f64, x: f64, after: f64) -> f64 {
         let x = x * self.scale;
         x * x - (after * self.scale) * (before * self.scale)
+    }
+
+    /// What was pushed and what comes are no neighbours: a gap lies between them. Only for open ends.
+    pub(crate) fn interrupt(&mut self) {
+        debug_assert_eq!(self.ends, Ends::Open);
+        self.count = 0;
     }
 
     pub(crate) fn push(&mut self, samples: &[f64]) -> Result<()> {
@@ -218,14 +235,16 @@ impl TeagerAccumulator {
 
     /// The indicator; `peak` is the largest absolute sample pushed.
     pub(crate) fn finish(mut self, peak: f64) -> Result<f64> {
-        if self.count < 3 {
+        if self.moments.count() == 0 {
             return Err(HumsError::TooShort { what: ENERGY_OPERATOR, needed: 3, found: self.count });
         }
-        let ends = [
-            self.teager(self.last[0], self.last[1], self.first[0]),
-            self.teager(self.last[1], self.first[0], self.first[1]),
-        ];
-        self.moments.push(&ends)?;
+        if self.ends == Ends::Cyclic {
+            let ends = [
+                self.teager(self.last[0], self.last[1], self.first[0]),
+                self.teager(self.last[1], self.first[0], self.first[1]),
+            ];
+            self.moments.push(&ends)?;
+        }
         let moments = self.moments.finish()?;
         // Squares carry rounding of order epsilon relative to the squared peak (4 at most once
         // multiplied by its own power of two).

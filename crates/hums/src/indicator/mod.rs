@@ -15,7 +15,7 @@ use crate::difference::{RemovalRule, SignalSet, SplitBuffers, Splitter};
 use crate::envelope::{AnalyticBuffers, band_analytic_into, moduli_into};
 use crate::error::{HumsError, Result, require_finite};
 use crate::moments::{MomentAccumulator, Moments};
-use basic::{CrestDefinition, TeagerAccumulator};
+use basic::{CrestDefinition, Ends, TeagerAccumulator};
 use gear_numerics::fft::{Fft, complex_inverse};
 use std::sync::Arc;
 
@@ -39,6 +39,11 @@ pub enum SignalKind {
 }
 
 impl SignalKind {
+    /// Whether the signal is one period of something periodic; a record as it was taken is not.
+    fn ends(self) -> Ends {
+        if self == Self::Raw { Ends::Open } else { Ends::Cyclic }
+    }
+
     /// Short name, as used in result columns.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -158,13 +163,14 @@ pub fn signal_indicators(signal: &[f64], kind: SignalKind) -> Result<Vec<Entry>>
     Ok(statistics(signal, &moments, kind))
 }
 
-/// [`signal_indicators`] of a record that arrives in pieces: memory does not grow with it.
+/// [`signal_indicators`] of a raw record that arrives in pieces: memory does not grow with it.
 ///
-/// The values have the same bits however the record is cut.
+/// Samples that are NaN or infinite are left out and counted ([`Self::missing`]): moments and extremes are those of the
+/// finite samples, the energy operator takes triples without a gap. The values have the same bits however the record is cut.
 #[derive(Debug, Clone)]
 pub struct StreamingIndicators {
-    kind: SignalKind,
     moments: MomentAccumulator,
+    missing: usize,
     /// The first fault of the energy operator (its squares can leave the range of `f64`) is kept
     /// for its entry.
     energy: Result<TeagerAccumulator>,
@@ -174,23 +180,38 @@ impl StreamingIndicators {
     /// For samples whose absolute values are of the order of `peak` (unit of the signal); only its
     /// order of magnitude matters, and only outside 1e-18 to 1e18.
     #[must_use]
-    pub fn new(kind: SignalKind, peak: f64) -> Self {
-        Self { kind, moments: MomentAccumulator::with_peak(peak), energy: Ok(TeagerAccumulator::with_peak(peak)) }
+    pub fn new(peak: f64) -> Self {
+        let energy = Ok(TeagerAccumulator::with_peak(peak, Ends::Open));
+        Self { moments: MomentAccumulator::with_peak(peak), missing: 0, energy }
+    }
+
+    /// Samples left out so far.
+    #[must_use]
+    pub fn missing(&self) -> usize {
+        self.missing
     }
 
     /// Takes the next samples.
     ///
     /// # Errors
-    /// [`HumsError::NotFinite`] with the index counted from the first sample ever pushed; the
-    /// accumulator is not usable afterwards.
+    /// [`HumsError::OutOfRange`] when a sum leaves the range of `f64`; the accumulator is not usable afterwards.
     pub fn push(&mut self, samples: &[f64]) -> Result<()> {
-        // Blocks of moments may lag behind, so that gaps are looked for here.
-        require_finite("indicators", samples).map_err(|error| match error {
-            HumsError::NotFinite { what, index, value } => {
-                HumsError::NotFinite { what, index: index + self.moments.count(), value }
+        if require_finite("indicators", samples).is_ok() {
+            return self.push_finite(samples);
+        }
+        for (k, part) in samples.split(|x| !x.is_finite()).enumerate() {
+            if k > 0 {
+                self.missing += 1;
+                if let Ok(energy) = &mut self.energy {
+                    energy.interrupt();
+                }
             }
-            other => other,
-        })?;
+            self.push_finite(part)?;
+        }
+        Ok(())
+    }
+
+    fn push_finite(&mut self, samples: &[f64]) -> Result<()> {
         self.moments.push(samples)?;
         if let Ok(energy) = &mut self.energy
             && let Err(fault) = energy.push(samples)
@@ -203,7 +224,7 @@ impl StreamingIndicators {
     /// The table.
     ///
     /// # Errors
-    /// [`HumsError::TooShort`] when nothing was pushed.
+    /// [`HumsError::TooShort`] when nothing finite was pushed.
     pub fn finish(self) -> Result<Vec<Entry>> {
         let moments = self.moments.finish()?;
         let energy = self.energy.and_then(|e| e.finish(moments.peak()));
@@ -212,12 +233,12 @@ impl StreamingIndicators {
             HumsError::NotFinite { .. } => HumsError::OutOfRange { what: "energy operator" },
             other => other,
         });
-        Ok(table_of(&moments, energy, self.kind))
+        Ok(table_of(&moments, energy, SignalKind::Raw))
     }
 }
 
 fn statistics(signal: &[f64], moments: &Moments, kind: SignalKind) -> Vec<Entry> {
-    let energy = basic::energy_operator_scaled(signal, moments.peak());
+    let energy = basic::energy_operator_scaled(signal, moments.peak(), kind.ends());
     table_of(moments, energy, kind)
 }
 

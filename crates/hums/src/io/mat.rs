@@ -1,13 +1,14 @@
 //! MAT v5 files: vectors and matrices of real numbers, compressed or not, read block by block.
 //!
 //! Channels are the arrays of the longest time axis (the longer axis of each array), matrices giving one a column `name(1)`,
-//! `name(2)`, ..; shorter arrays are left out. A scalar named `fs`, `rate`, `rate_hz`, `sample_rate` or the like (any
+//! `name(2)`, ..; other arrays are left out, and named in [`BlockReader::notes`]. A scalar named `fs`, `rate`, `rate_hz`, `sample_rate` or the like (any
 //! case) is the sampling rate. v7.3 files are HDF5 and not read.
 //!
 //! Layout: "MAT-File Format" (The MathWorks), level 5: a header of 128 bytes, then elements of a tag (type, bytes) and data; an array
 //! is an element of elements (flags, dimensions, name, numbers), which `-v7` wraps into a zlib stream. Numbers are stored by columns,
-//! so that every channel has a reader of its own: at its place in the file, or, compressed, a decompressor that passes over the
-//! columns before it (k columns in one compressed array are inflated k/2 times; an array each costs nothing).
+//! so that every channel has a reader of its own: at its place in the file, or, compressed, a decompressor. A compressed matrix of
+//! several columns is inflated into memory once, up to [`MAX_INFLATED`] in one file; beyond, every column has a decompressor that passes over the
+//! columns before it, for at most [`MAX_STREAMS`] of them.
 
 use super::stretch::{Kind, Place, Scalar, Stretch, StretchReader};
 use super::{BlockReader, ReadError, is_rate_name};
@@ -15,6 +16,7 @@ use flate2::read::ZlibDecoder;
 use std::cell::RefCell;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::rc::Rc;
+use std::sync::Arc;
 
 const MATRIX: u32 = 14;
 const COMPRESSED: u32 = 15;
@@ -94,6 +96,7 @@ pub fn open<R: Read + Seek + 'static>(mut source: R) -> Result<Box<dyn BlockRead
         return Err(mat_error("no vector or matrix of real numbers".into()));
     };
     let (mut names, mut stretches) = (Vec::new(), Vec::new());
+    let mut inflated = 0;
     for (spot, array) in arrays.iter().filter(|(_, a)| a.rows.max(a.columns) == samples) {
         let count = array.rows.min(array.columns);
         if names.len() as u64 + count > MOST_CHANNELS {
@@ -103,7 +106,32 @@ pub fn open<R: Read + Seek + 'static>(mut source: R) -> Result<Box<dyn BlockRead
         let by_columns = array.rows >= array.columns;
         let per_stretch = array.rows * array.scalar.size as u64;
         let parts = if by_columns { count } else { 1 };
+        let bytes = parts * per_stretch;
+        let whole = if spot.compressed && parts > 1 && inflated + bytes <= MAX_INFLATED {
+            inflated += bytes;
+            Some(inflate(spot.source(&file), array, bytes)?)
+        } else {
+            None
+        };
+        if spot.compressed && whole.is_none() && parts > MAX_STREAMS {
+            return Err(mat_error(format!(
+                "the compressed array \"{}\" has {parts} columns of {per_stretch} bytes: more than {MAX_INFLATED} bytes, and more than {MAX_STREAMS} columns; save it uncompressed (-v6)",
+                array.name
+            )));
+        }
         for c in 0..parts {
+            if let Some(whole) = &whole {
+                let mut part = std::io::Cursor::new(Arc::clone(whole));
+                part.set_position(c * per_stretch);
+                stretches.push(Stretch {
+                    skip: 0,
+                    source: Box::new(part),
+                    scalar: array.scalar,
+                    width: 1,
+                    checked: false,
+                });
+                continue;
+            }
             stretches.push(Stretch {
                 skip: if spot.compressed { array.start + c * per_stretch } else { 0 },
                 source: if spot.compressed {
@@ -117,11 +145,35 @@ pub fn open<R: Read + Seek + 'static>(mut source: R) -> Result<Box<dyn BlockRead
             });
         }
     }
-    Ok(Box::new(StretchReader::new(FORMAT, names, rate, stretches, samples)))
+    let notes = arrays.iter().filter(|(_, a)| a.rows.max(a.columns) != samples).map(|(_, a)| {
+        format!(
+            "array \"{}\" of {} by {} is left out: the longest arrays have {samples} samples",
+            a.name, a.rows, a.columns
+        )
+    });
+    let notes = notes.collect();
+    Ok(Box::new(StretchReader::new(FORMAT, names, rate, stretches, samples).with_notes(notes)))
+}
+
+/// The numbers of a compressed array, inflated; the stream is read to its end, whose checksum covers them.
+fn inflate(mut source: Box<dyn Read>, array: &Array, bytes: u64) -> Result<Arc<[u8]>, ReadError> {
+    let fault = |e: std::io::Error| mat_error(format!("the compressed numbers of \"{}\" are damaged: {e}", array.name));
+    std::io::copy(&mut (&mut source).take(array.start), &mut std::io::sink()).map_err(fault)?;
+    let mut whole = Vec::new();
+    (&mut source).take(bytes).read_to_end(&mut whole).map_err(fault)?;
+    if (whole.len() as u64) < bytes {
+        return Err(fault(std::io::ErrorKind::UnexpectedEof.into()));
+    }
+    std::io::copy(&mut source, &mut std::io::sink()).map_err(fault)?;
+    Ok(whole.into())
 }
 
 /// Channels at most.
 const MOST_CHANNELS: u64 = 65_536;
+/// Bytes of compressed matrices kept inflated in memory, of one file.
+const MAX_INFLATED: u64 = 1 << 28;
+/// Decompressors (some 50 KiB each) that run at a time.
+const MAX_STREAMS: u64 = 1024;
 
 const FORMAT: &str = "MAT v5";
 

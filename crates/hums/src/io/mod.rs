@@ -11,7 +11,7 @@
 //! | MAT v5 ([`mat`]) | yes, compressed or not | vectors and matrices of numbers |
 //! | Parquet ([`parquet`]) | by pages | columns of whole numbers, floats, truth values, times |
 //!
-//! Missing values come out as NaN, for [`crate::signal::inspect`] to find; anything else that is not
+//! Missing values come out as NaN, for [`crate::quality`] to find; anything else that is not
 //! a number is an error naming line and column.
 //! Verified by `tests/io.rs` (round trips and damaged files).
 
@@ -44,6 +44,12 @@ pub enum ReadError {
         /// Why.
         #[source]
         source: std::io::Error,
+    },
+    /// A pipe, a device, a folder: only regular files are read.
+    #[error("{path} is no regular file")]
+    NotRegular {
+        /// Which.
+        path: PathBuf,
     },
     /// Reading broke off.
     #[error("failed to read the recording")]
@@ -92,6 +98,15 @@ pub enum ReadError {
     },
 }
 
+/// Numbers of a block, all channels together: 32 MiB.
+pub const BLOCK_VALUES: usize = 1 << 22;
+
+/// Samples a channel of a block, so that memory is bounded whatever the number of channels.
+#[must_use]
+pub fn block_samples(channels: usize) -> usize {
+    (BLOCK_VALUES / channels.max(1)).clamp(64, 1 << 16)
+}
+
 /// Hands out a recording block by block.
 pub trait BlockReader {
     /// Names of the channels, in order.
@@ -99,6 +114,11 @@ pub trait BlockReader {
 
     /// Sampling rate stated by the file, Hz.
     fn rate(&self) -> Option<f64>;
+
+    /// What the file holds besides, and is not read (arrays of another length, ..).
+    fn notes(&self) -> &[String] {
+        &[]
+    }
 
     /// Appends at most `samples` samples to each column (one column a channel) and returns their
     /// number; 0 at the end.
@@ -149,7 +169,7 @@ pub fn open_counted(
     if !is_recording(path) {
         return Err(ReadError::UnknownExtension { path: path.into() });
     }
-    let inner = File::open(path).map_err(|source| ReadError::File { path: path.into(), source })?;
+    let inner = open_regular(path)?;
     let extension = extension(path);
     if matches!(extension.as_str(), "parquet" | "pq") {
         return Ok(Box::new(parquet::ParquetRecording::new(inner, bytes)?));
@@ -161,6 +181,19 @@ pub fn open_counted(
         "mat" => mat::open(file)?,
         _ => Box::new(text::TextReader::new(file, options)?),
     })
+}
+
+/// Opens a file, but no pipe and no device: those may never end, and cannot be read twice.
+///
+/// # Errors
+/// [`ReadError::NotRegular`], [`ReadError::File`].
+fn open_regular(path: &Path) -> std::result::Result<File, ReadError> {
+    let failed = |source| ReadError::File { path: path.into(), source };
+    // Asked before it is opened: opening a pipe waits for its other end.
+    if !std::fs::metadata(path).map_err(failed)?.is_file() {
+        return Err(ReadError::NotRegular { path: path.into() });
+    }
+    File::open(path).map_err(failed)
 }
 
 /// Bytes taken from a file at a time.
@@ -199,28 +232,9 @@ fn is_rate_name(name: &str) -> bool {
 /// [`ReadError`].
 pub fn read_all(reader: &mut dyn BlockReader) -> std::result::Result<Recording, ReadError> {
     let mut channels = vec![Vec::new(); reader.channels().len()];
-    while reader.read_block(1 << 16, &mut channels)? > 0 {}
+    let samples = block_samples(channels.len());
+    while reader.read_block(samples, &mut channels)? > 0 {}
     Ok(Recording { names: reader.channels().to_vec(), rate: reader.rate(), channels })
-}
-
-/// Sampling rate (Hz) of a time column (s): steps over duration.
-///
-/// # Errors
-/// [`crate::HumsError::Parameter`] when a step differs from the mean step by more than half of it (a
-/// hole, a jump back): the record is not uniformly sampled. Fewer than two or non-finite times.
-pub fn rate_of_times(times: &[f64]) -> crate::Result<f64> {
-    crate::error::require_len("time column", times, 2)?;
-    crate::error::require_finite("time column", times)?;
-    let step = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
-    crate::error::require_positive("mean time step", step)?;
-    match times.windows(2).map(|w| w[1] - w[0]).find(|d| (d - step).abs() > 0.5 * step) {
-        Some(value) => Err(crate::HumsError::Parameter {
-            parameter: "time step",
-            value,
-            allowed: "within half a mean step of the mean step",
-        }),
-        None => Ok(1.0 / step),
-    }
 }
 
 fn check_columns(channels: usize, columns: &[Vec<f64>]) -> std::result::Result<(), ReadError> {

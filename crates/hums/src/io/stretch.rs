@@ -119,6 +119,7 @@ pub(super) struct StretchReader {
     total: u64,
     done: u64,
     bytes: Vec<u8>,
+    notes: Vec<String>,
 }
 
 impl StretchReader {
@@ -130,7 +131,12 @@ impl StretchReader {
         stretches: Vec<Stretch>,
         total: u64,
     ) -> Self {
-        Self { format, names, rate, stretches, total, done: 0, bytes: Vec::new() }
+        Self { format, names, rate, stretches, total, done: 0, bytes: Vec::new(), notes: Vec::new() }
+    }
+
+    /// With what the file holds besides.
+    pub fn with_notes(self, notes: Vec<String>) -> Self {
+        Self { notes, ..self }
     }
 }
 
@@ -141,6 +147,10 @@ impl BlockReader for StretchReader {
 
     fn rate(&self) -> Option<f64> {
         self.rate
+    }
+
+    fn notes(&self) -> &[String] {
+        &self.notes
     }
 
     fn read_block(&mut self, samples: usize, columns: &mut [Vec<f64>]) -> Result<usize, ReadError> {

@@ -38,19 +38,8 @@
 //! of that is the sample counted twice, for against the exact integrals they differ by 0.01, 0.03 and
 //! 0.09 %.
 //!
-//! # Where print and derivation disagree (the code follows the derivation)
-//! - D 4.5.1 prints `A_(i+1)/A_i = -e^(delta/2)` and `A_2 = -exp(-delta/2)`. A decaying signal has
-//!   `A_(i+1)/A_i = -e^(-delta/2)`, and `A_2 = -A_1 e^(-delta/2)`. The figures quoted there (A_1 =
-//!   2.63, A_2 = -2.32, A_3 = 2.05 um) follow the latter: 2.630, -2.320, 2.046.
-//! - D 4.13e prints the coefficient 17 with `mu^6 A_1^2 sum e^(-delta (i-1)) / n`. The binomial
-//!   expansion gives `C(8,6) / 2 = 14`. All other coefficients and signs of 4.13, and all of 4.14,
-//!   agree with the derivation. For the case above the wrong one changes M8A by 2e-13 of itself, since
-//!   mu / A_1 is 0.004; for one half cycle (n = 1) it makes 5.6 of what is 2.6.
-//! - D 4.6.1.3 asks for the floor of `2 Z w_d / w_m`, which is 81.93 here, but goes on with 82 half
-//!   cycles. The floor is off by 0.6, 1.2 and 3.5 % (RMS, FM4, M8A), the nearest whole number by 0.01,
-//!   0.03 and 0.09 %: [`DampedSine::half_cycles`] rounds to the nearest.
-//! - D 4.6.1.3 calls `sum e^(-delta i) = 1/(1 - e^(-delta))` a Taylor series; it is the geometric
-//!   series, and its relative error is exactly `e^(-n delta)`.
+//! The dissertation's print and its derivation disagree in four places; the code follows the derivation. They are
+//! listed with their effect in `docs/signals.md`, "Misprints of chapter 4".
 //!
 //! [`modes`] holds several modes, with exact closed forms; [`fit`] finds A and t_d (and frequency
 //! and damping); [`crate::modal_fit`] finds several modes.

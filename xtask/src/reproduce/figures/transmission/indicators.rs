@@ -1,7 +1,7 @@
 //! Appendices A and B: condition indicators of the housing's accelerations over crack lengths.
 
 use anyhow::Context as _;
-use hums::indicator::basic::{CrestDefinition, crest_factor, energy_operator, kurtosis, m8a, rms};
+use hums::indicator::basic::{CrestDefinition, Ends, crest_factor, energy_operator, kurtosis, m8a, rms};
 use hums::moments::Moments;
 
 use super::*;
@@ -29,7 +29,7 @@ fn kurtosis_of(x: &[f64]) -> anyhow::Result<f64> {
 }
 
 fn energy_of(x: &[f64]) -> anyhow::Result<f64> {
-    Ok(energy_operator(x)?)
+    Ok(energy_operator(x, Ends::Cyclic)?)
 }
 
 fn m8a_of(x: &[f64]) -> anyhow::Result<f64> {
