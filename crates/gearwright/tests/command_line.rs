@@ -224,8 +224,9 @@ fn devices_pipes_and_files_without_end_are_refused_at_once() {
     let lumped = |file: &str| {
         format!("kind = \"lumped-pair\"\n[pair]\ninput = \"prescribed\"\n[excitation]\ntable.file = \"{file}\"\n")
     };
-    let dynamics =
-        |file: &str| format!("kind = \"dynamics\"\n[pair]\nspur_pair = \"{file}\"\n[run]\nspeed_rpm = 1.0\n");
+    let dynamics = |file: &str| {
+        format!("kind = \"dynamics\"\n[pair]\ninput = \"prescribed\"\nspur_pair = \"{file}\"\n[run]\nspeed_rpm = 1.0\n")
+    };
     let deviation = |file: &str| {
         let key = format!("facewidth_mm = 16.0\nmodification.deviation_table = \"{file}\"\n\n[gear]");
         SMALL.replacen("facewidth_mm = 16.0\n\n[gear]", &key, 1)

@@ -138,8 +138,13 @@ crack.length_percent = 60.0
 [run]
 speed_rpm = 1621.7
 torque_n_m = 6106.0
-steps_per_mesh_cycle = 8
 carrier_turns = 1
+[analysis]
+table_positions = 16
+[numerics]
+steps_per_sample = 1
+[signals]
+band_hz = 2150.0
 [contact]
 element_order = 2
 mesh_density = 0.6

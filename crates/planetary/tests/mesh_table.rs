@@ -44,28 +44,30 @@ fn fresh(model: &PairModel, mesh_cycle: f64, force: f64) -> (f64, f64) {
     (result.static_transmission_error, result.local_stiffness().unwrap())
 }
 
-/// Largest and rms error of the force over loads between the knots.
-fn errors(model: &PairModel, table: &MeshTable, steps: impl Iterator<Item = usize>) -> [f64; 2] {
-    let errors: Vec<f64> = steps
-        .flat_map(|step| (0..9).map(move |k| (step, 3.0 * FORCE * 0.53_f64.powi(k) * (1.0 - 0.003 * step as f64))))
-        .map(|(step, force)| {
-            let cycle = step as f64 / 50.0;
-            table.response(cycle, fresh(model, cycle, force).0).force / force - 1.0
-        })
+/// Largest and rms error of the force over loads between the knots, at mesh cycles.
+fn errors(model: &PairModel, table: &MeshTable, cycles: impl Iterator<Item = f64>) -> [f64; 2] {
+    let errors: Vec<f64> = cycles
+        .flat_map(|cycle| (0..9).map(move |k| (cycle, 3.0 * FORCE * 0.53_f64.powi(k) * (1.0 - 0.15 * cycle))))
+        .map(|(cycle, force)| table.response(cycle, fresh(model, cycle, force).0).force / force - 1.0)
         .collect();
     let squares: f64 = errors.iter().map(|error| error * error).sum();
     [errors.iter().fold(0.0, |worst, error| error.abs().max(worst)), (squares / errors.len() as f64).sqrt()]
 }
 
-/// Between its knots a table is as good as the discretisation of the loads (measured: 1.8e-3 worst, 2.9e-4 rms), and gains with it.
+/// Every seventh position of a table, `shift` of the distance between two further on.
+fn cycles(positions: usize, shift: f64) -> impl Iterator<Item = f64> {
+    (0..positions).step_by(7 * positions / 128).map(move |k| (k as f64 + shift) / positions as f64)
+}
+
+/// At its positions a table is as good as the discretisation of the loads, and gains with it.
 #[test]
 fn invariant_table_gives_fresh_solutions() {
     let mut of_sun = [0.0; 2];
     for site in MeshSite::ALL {
         let (model, table) = plane(site);
-        let [worst, rms] = errors(model, table, (0..50).step_by(3));
+        let [worst, rms] = errors(model, table, cycles(128, 0.0));
         println!("{site:?}: force {worst:.1e} worst, {rms:.1e} rms");
-        assert!(worst < 2.5e-3 && rms < 4e-4, "{site:?} {worst} {rms}");
+        assert!(worst < 3e-3 && rms < 4e-4, "{site:?} {worst} {rms}");
         if site == MeshSite::SunPlanet {
             of_sun = [worst, rms];
         }
@@ -74,8 +76,22 @@ fn invariant_table_gives_fresh_solutions() {
     fine.contact.cells_per_half_width = 16.0;
     let model = PairModel::new(&pair(MeshSite::SunPlanet), &fine).unwrap();
     let table = MeshTable::from_contact(&model, &options(), &()).unwrap();
-    let [worst, rms] = errors(&model, &table, (0..50).step_by(3));
+    let [worst, rms] = errors(&model, &table, cycles(128, 0.0));
     assert!(worst < 0.75 * of_sun[0] && rms < 0.8 * of_sun[1], "{worst} {rms} against {of_sun:?}");
+}
+
+/// Between its positions a table is a cubic in the mesh cycle. Where a tooth enters the curves have a kink, which sets the error; it falls with the
+/// distance of the positions.
+#[test]
+fn order_between_positions() {
+    let (model, table) = plane(MeshSite::SunPlanet);
+    let [worst, rms] = errors(model, table, cycles(128, 0.5));
+    let finer = TableOptions { positions_per_cycle: 512, ..options() };
+    let finer = MeshTable::from_contact(model, &finer, &()).unwrap();
+    let [fine_worst, fine_rms] = errors(model, &finer, cycles(512, 0.5));
+    println!("128 positions: {worst:.1e} worst, {rms:.1e} rms; 512: {fine_worst:.1e} worst, {fine_rms:.1e} rms");
+    assert!(worst < 6e-2 && rms < 6e-3, "{worst} {rms}");
+    assert!(fine_rms < 0.5 * rms, "{fine_rms} against {rms}");
 }
 
 /// Stiffness is the local slope where no pair is about to join (a percent is the stair of cells that join one by one), and tooth forces add up.
@@ -237,23 +253,9 @@ fn invariant_solid_table() {
         damaged.data().windows[0].curves.len(),
         started.elapsed()
     );
-    let [worst, rms] = errors(&model, &table, (0..50).step_by(7));
+    let [worst, rms] = errors(&model, &table, cycles(128, 0.0));
     println!("{worst:.1e} {rms:.1e}");
     assert!(worst < 4e-3 && rms < 6e-4, "{worst} {rms}");
-}
-
-/// Between positions a table is linear: as good as at positions at the median of the cycle, off by some percent within the step in which a pair joins.
-#[test]
-fn invariant_between_positions() {
-    let (model, table) = plane(MeshSite::SunPlanet);
-    let error = |i: i32| {
-        let cycle = (f64::from(i) + 0.5) / 50.0;
-        (table.response(cycle, fresh(model, cycle, FORCE).0).force / FORCE - 1.0).abs()
-    };
-    let mut errors: Vec<f64> = (0..50).map(error).collect();
-    errors.sort_by(f64::total_cmp);
-    println!("between positions: {:.1e} at the median, {:.1e} at worst", errors[25], errors[49]);
-    assert!(errors[25] < 1e-3 && errors[49] < 0.05, "{errors:?}");
 }
 
 /// A table written and read again is the same to the bit; one that is no table is refused.

@@ -124,7 +124,10 @@ fn entry<'a>(list: &'a Value, choice: &str) -> Option<&'a Value> {
     let Some((key, wanted)) = choice.split_once('=') else { return list.get(choice.parse::<usize>().ok()?) };
     let is_wanted = |own: &Value| match own {
         Value::String(text) => text == wanted,
-        other => other.to_string() == wanted,
+        other => {
+            let printed = other.to_string();
+            printed == wanted
+        }
     };
     list.as_array()?.iter().find(|entry| entry.get(key).is_some_and(is_wanted))
 }
