@@ -7,8 +7,8 @@
 //! Layout: "MAT-File Format" (The MathWorks), level 5: a header of 128 bytes, then elements of a tag (type, bytes) and data; an array
 //! is an element of elements (flags, dimensions, name, numbers), which `-v7` wraps into a zlib stream. Numbers are stored by columns,
 //! so that every channel has a reader of its own: at its place in the file, or, compressed, a decompressor. A compressed matrix of
-//! several columns is inflated into memory once, up to [`MAX_INFLATED`] in one file; beyond, every column has a decompressor that passes over the
-//! columns before it, for at most [`MAX_STREAMS`] of them.
+//! several columns is inflated into memory once, up to `MAX_INFLATED` in one file; beyond, every column has a decompressor that passes over the
+//! columns before it, for at most `MAX_STREAMS` of them.
 
 use super::stretch::{Kind, Place, Scalar, Stretch, StretchReader};
 use super::{BlockReader, ReadError, is_rate_name};
