@@ -123,7 +123,7 @@ pub fn column<'a, R, C: Into<Cell>>(
     Column { name, unit, text, value: Box::new(move |row, _| value(row).into()) }
 }
 
-/// A family of columns: as [`column`], the value depends on the number of the key as well.
+/// A family of columns: as [`column()`], the value depends on the number of the key as well.
 pub fn each<'a, R, C: Into<Cell>>(
     name: &'static str,
     unit: Unit,
